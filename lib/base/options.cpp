@@ -1,0 +1,315 @@
+#include "base/options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string_view>
+#include <toml++/toml.h>
+
+#include "base/check.h"
+#include "base/error.h"
+#include "base/version.h"
+
+namespace dexremoe {
+namespace {
+
+// Every section that a configuration file may have beside the tools' own names. A section outside
+// both lists is an error; a section that this tool does not use is left to the tools that do.
+constexpr std::array<std::string_view, 13> kSections = {
+    "scale", "decompose", "cloud", "shape",  "hand", "sim", "grasp",
+    "task",  "policy",    "ppo",   "eval",   "tsne", "render"};
+constexpr std::array<std::string_view, 19> kTools = {
+    "make_objects", "scale_mesh",    "decompose",   "sample_cloud", "train_shape",
+    "describe_shape", "hand_info",   "find_grasps", "train_base",   "train_expert",
+    "train_gate",   "evaluate",      "tabulate",    "embed_gate",   "plot",
+    "render",       "h5_info",       "h5_diff",     "list_objects"};
+
+template <typename List>
+bool Contains(const List& list, std::string_view word) {
+  return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+// Edit distance, to suggest the key that was meant.
+std::size_t Distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+template <typename Names>
+std::string Suggestion(std::string_view word, const Names& names) {
+  std::string_view best;
+  std::size_t best_distance = 4;
+  for (const auto& name : names) {
+    const std::size_t distance = Distance(word, name);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = name;
+    }
+  }
+  return best.empty() ? "" : fmt::format("; did you mean '{}'?", best);
+}
+
+// How a value stands in the provenance text and in a configuration file.
+std::string Print(bool value) { return value ? "true" : "false"; }
+std::string Print(const std::string& value) { return '"' + value + '"'; }
+template <typename T>
+std::string Print(T value) {
+  return fmt::format("{}", value);
+}
+template <typename T>
+std::string Print(const std::vector<T>& values) {
+  std::string text;
+  for (const T& value : values) text += (text.empty() ? "" : ", ") + Print(value);
+  return '[' + text + ']';
+}
+
+// A TOML value as it would be written on the command line.
+std::string FlagText(const std::string& path, const std::string& key, const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* flag = node.as_boolean()) return Print(flag->get());
+  if (const auto* whole = node.as_integer()) return fmt::format("{}", whole->get());
+  if (const auto* real = node.as_floating_point()) return fmt::format("{}", real->get());
+  if (const auto* list = node.as_array()) {
+    std::string text;
+    for (const toml::node& item : *list) text += (text.empty() ? "" : ",") + FlagText(path, key, item);
+    return text;
+  }
+  throw UsageError(fmt::format(
+      "{}: key '{}': expected a number, text, true, false or a list, found another type", path, key));
+}
+
+void CheckRange(const std::string& name, const std::string& text, double low, double high) {
+  std::size_t used = 0;
+  double value = NAN;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+    return;  // not a number: the conversion itself will say so
+  }
+  if (used != text.size()) return;
+  if (!(value >= low && value <= high))
+    throw CLI::ValidationError(
+        name, fmt::format("expected a value in [{}, {}], found {}", low, high, text));
+}
+
+}  // namespace
+
+OptionHandle& OptionHandle::Required() {
+  option_->required();
+  return *this;
+}
+
+OptionHandle& OptionHandle::Range(double low, double high) {
+  const std::string name = options_->entries_[index_].name;
+  option_->check(CLI::Validator(
+      [name, low, high](const std::string& text) {
+        CheckRange("--" + name, text, low, high);
+        return std::string();
+      },
+      fmt::format("in [{}, {}]", low, high)));
+  return *this;
+}
+
+OptionHandle& OptionHandle::Choices(const std::vector<std::string>& allowed) {
+  const std::string list = fmt::format("{}", fmt::join(allowed, ", "));
+  option_->check(CLI::Validator(
+      [allowed, list](const std::string& text) {
+        return Contains(allowed, text) ? std::string()
+                                       : fmt::format("expected one of {}, found '{}'", list, text);
+      },
+      list));
+  return *this;
+}
+
+OptionHandle& OptionHandle::NotStored() {
+  options_->entries_[index_].stored = false;
+  return *this;
+}
+
+Options::Options(std::string tool, const std::string& summary, std::string example)
+    : tool_(std::move(tool)),
+      example_(std::move(example)),
+      app_(std::make_unique<CLI::App>(summary, tool_)) {
+  DEX_CHECK(Contains(kTools, tool_) || tool_.starts_with("test") || tool_.starts_with("bench"));
+  app_->set_version_flag("--version", tool_ + " " + kVersion);
+  app_->footer("Example:\n  " + example_);
+  app_->get_formatter()->column_width(36);
+  Add("config", &config_files_, "TOML file(s) with the same names; the command line wins")
+      .NotStored();
+}
+
+Options::~Options() = default;
+
+template <typename T>
+OptionHandle Options::Add(const std::string& name, T* value, const std::string& help) {
+  if (const auto dot = name.find('.'); dot != std::string::npos)
+    DEX_CHECK(Contains(kSections, name.substr(0, dot)));
+  CLI::Option* option = nullptr;
+  if constexpr (std::is_same_v<T, bool>) {
+    option = app_->add_flag("--" + name + "{true}", *value, help);
+    option->default_str(Print(*value));
+  } else {
+    option = app_->add_option("--" + name, *value, help);
+    option->capture_default_str();
+  }
+  if constexpr (requires { value->push_back({}); } && !std::is_same_v<T, std::string>) {
+    option->delimiter(',');
+    option->expected(1);
+  }
+  option->multi_option_policy(name == "config" ? CLI::MultiOptionPolicy::TakeAll
+                                               : CLI::MultiOptionPolicy::TakeLast);
+  if constexpr (requires { value->push_back({}); } && !std::is_same_v<T, std::string>) {
+    option->expected(1, CLI::detail::expected_max_vector_size);
+    if (name != "config") option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  }
+  entries_.push_back({name, [value] { return Print(*value); }});
+  return {this, option, entries_.size() - 1};
+}
+
+template OptionHandle Options::Add(const std::string&, bool*, const std::string&);
+template OptionHandle Options::Add(const std::string&, int*, const std::string&);
+template OptionHandle Options::Add(const std::string&, std::int64_t*, const std::string&);
+template OptionHandle Options::Add(const std::string&, std::uint64_t*, const std::string&);
+template OptionHandle Options::Add(const std::string&, double*, const std::string&);
+template OptionHandle Options::Add(const std::string&, std::string*, const std::string&);
+template OptionHandle Options::Add(const std::string&, std::vector<double>*, const std::string&);
+template OptionHandle Options::Add(const std::string&, std::vector<int>*, const std::string&);
+template OptionHandle Options::Add(const std::string&, std::vector<std::string>*,
+                                   const std::string&);
+
+bool Options::Has(const std::string& name) const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [&](const Entry& entry) { return entry.name == name; });
+}
+
+std::string Options::Text() const {
+  std::string text;
+  for (const Entry& entry : entries_)
+    if (entry.stored) text += entry.name + " = " + entry.print() + "\n";
+  return text;
+}
+
+void Options::CheckKey(const std::string& path, const std::string& section,
+                       const std::string& key) const {
+  const std::string name = section == tool_ ? key : section + "." + key;
+  if (Has(name)) return;
+  std::vector<std::string> known;
+  const std::string prefix = section == tool_ ? "" : section + ".";
+  for (const Entry& entry : entries_)
+    if (entry.name.starts_with(prefix) && (section != tool_ || entry.name.find('.') == std::string::npos))
+      known.push_back(entry.name.substr(prefix.size()));
+  throw UsageError(fmt::format("{}: unknown key '{}' in [{}]{}", path, key, section,
+                               Suggestion(key, known)));
+}
+
+std::vector<std::string> Options::ReadConfig(const std::string& path) const {
+  toml::table table;
+  try {
+    table = toml::parse_file(path);
+  } catch (const toml::parse_error& error) {
+    throw UsageError(fmt::format("{}: line {}: {}", path, error.source().begin.line,
+                                 std::string(error.description())));
+  }
+  std::vector<std::string> flags;
+  for (const auto& [section_key, node] : table) {
+    const std::string section(section_key.str());
+    const toml::table* keys = node.as_table();
+    if (keys == nullptr)
+      throw UsageError(fmt::format("{}: key '{}' stands outside any [section]", path, section));
+    if (!Contains(kSections, section) && !Contains(kTools, section) && section != tool_) {
+      std::vector<std::string> names(kSections.begin(), kSections.end());
+      names.insert(names.end(), kTools.begin(), kTools.end());
+      throw UsageError(
+          fmt::format("{}: unknown section [{}]{}", path, section, Suggestion(section, names)));
+    }
+    const bool used =
+        section == tool_ || std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+          return entry.name.starts_with(section + ".");
+        });
+    if (!used) continue;
+    for (const auto& [key, value] : *keys) {
+      const std::string name(key.str());
+      CheckKey(path, section, name);
+      flags.push_back(fmt::format("--{}{}={}", section == tool_ ? "" : section + ".", name,
+                                  FlagText(path, name, value)));
+    }
+  }
+  return flags;
+}
+
+bool Options::Parse(int argc, const char* const* argv) {
+  std::vector<std::string> from_config, from_command_line;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    from_command_line.push_back(word);
+    if (!word.starts_with("--config=")) continue;
+    for (std::string& flag : ReadConfig(word.substr(9))) from_config.push_back(std::move(flag));
+  }
+  // A list given on the command line replaces the configured one instead of growing it.
+  std::erase_if(from_config, [&](const std::string& flag) {
+    const std::string stem = flag.substr(0, flag.find('=') + 1);
+    return std::any_of(from_command_line.begin(), from_command_line.end(),
+                       [&](const std::string& word) { return word.starts_with(stem); });
+  });
+  std::vector<std::string> words(std::move(from_command_line));
+  words.insert(words.begin(), from_config.begin(), from_config.end());
+  for (const std::string& word : words) {
+    if (!word.starts_with("--"))
+      throw UsageError(fmt::format("unexpected argument '{}'; options are written --name=value", word));
+    const std::string name = word.substr(2, word.find('=') - 2);
+    if (name == "help" || name == "version" || Has(name)) continue;
+    std::vector<std::string> names;
+    for (const Entry& entry : entries_) names.push_back(entry.name);
+    throw UsageError(fmt::format("unknown option --{}{}", name, Suggestion(name, names)));
+  }
+  std::reverse(words.begin(), words.end());  // CLI11 takes the last word first
+  try {
+    app_->parse(words);
+  } catch (const CLI::CallForVersion& version) {
+    help_text_ = version.what();
+    return false;
+  } catch (const CLI::CallForHelp&) {
+    help_text_ = app_->help();
+    return false;
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(error.what());
+  }
+  return true;
+}
+
+int RunTool(Options& options, int argc, const char* const* argv,
+            const std::function<void()>& body) {
+  int code = 0;
+  try {
+    if (options.Parse(argc, argv))
+      body();
+    else
+      std::puts(options.help_text().c_str());
+  } catch (const UsageError& error) {
+    std::fprintf(stderr, "%s: %s\n", options.tool().c_str(), error.what());
+    code = 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", options.tool().c_str(), error.what());
+    code = 1;
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    std::fprintf(stderr, "%s: stdout could not be written (disk full?)\n", options.tool().c_str());
+    code = std::max(code, 1);
+  }
+  return code;
+}
+
+}  // namespace dexremoe

@@ -1,0 +1,50 @@
+// A stack of linear layers with ELU between them (and after the last, when asked for).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/random.h"
+#include "nn/params.h"
+
+namespace dexremoe {
+
+class Mlp {
+ public:
+  // widths = {inputs, hidden..., outputs}; adds "name/0/weight" [k,c] and "name/0/bias" [k] ... to
+  // the layout.
+  Mlp(ParamLayout& layout, const std::string& name, std::vector<int> widths, bool elu_at_end);
+
+  int inputs() const { return widths_.front(); }
+  int outputs() const { return widths_.back(); }
+  int layers() const { return static_cast<int>(widths_.size()) - 1; }
+  // Elements of the activation buffer for n rows (all layer outputs, one after the other).
+  std::int64_t ActivationSize(std::int64_t n) const;
+  // Elements of scratch that Backward needs for n rows.
+  std::int64_t ScratchSize(std::int64_t n) const;
+
+  // activations [ActivationSize(n)] keeps every layer's output; returns the last one [n, outputs].
+  template <typename T>
+  const T* Forward(const T* params, std::int64_t n, const T* x, T* activations) const;
+  // dy [n, outputs] is overwritten. dx [n, inputs] may be null; grads may be null (frozen).
+  template <typename T>
+  void Backward(const T* params, std::int64_t n, const T* x, const T* activations, T* dy, T* dx,
+                T* grads, T* scratch) const;
+
+  // PyTorch's default for linear layers: U(-1/sqrt(c), 1/sqrt(c)) for weights; biases zero.
+  // The last layer's weights are multiplied by `last_scale`.
+  void Initialize(Rng& rng, double last_scale, float* params) const;
+
+  // Indices into the layout.
+  int weight(int layer) const { return first_block_ + 2 * layer; }
+  int bias(int layer) const { return first_block_ + 2 * layer + 1; }
+
+ private:
+  std::vector<int> widths_;
+  bool elu_at_end_;
+  int first_block_;
+  std::vector<std::int64_t> weight_offset_, bias_offset_;
+};
+
+}  // namespace dexremoe

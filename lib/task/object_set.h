@@ -1,0 +1,61 @@
+// The objects of an experiment: which they are (objects.csv) and what the stages before made of them.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "geometry/mesh.h"
+#include "geometry/pose.h"
+#include "sim/batch_sim.h"
+
+namespace dexremoe {
+
+// The paper's six categories, in the order of the one-hot vector.
+inline constexpr std::array<const char*, 6> kCategories = {"airplane", "animal", "head",
+                                                           "shoe",     "train",  "vehicle"};
+inline constexpr int kNumCategories = 6;
+inline constexpr int kShapeFeatureSize = 100;  // p, the PointNet++ descriptor (paper, III-B)
+
+// Index of a category; throws Error listing the six names.
+int CategoryIndex(const std::string& name);
+
+// One line of objects.csv: name,category,split,mesh,folder,grasps. Paths are relative to the
+// working directory.
+struct ObjectEntry {
+  std::string name;
+  std::string category;
+  std::string split;    // "train" or "ood" (out of distribution)
+  std::string mesh;     // source mesh
+  std::string folder;   // holds mesh.h5, parts.h5, cloud.h5, shape.h5
+  std::string grasps;   // grasps.h5
+};
+std::vector<ObjectEntry> ReadObjectList(const std::string& path);
+void WriteObjectList(const std::string& path, const std::vector<ObjectEntry>& entries);
+
+// A stable grasp: start of an episode.
+struct Grasp {
+  std::vector<double> q;        // joint angles, rad
+  std::vector<double> target;   // servo targets, rad
+  Pose X_WO;                    // object pose
+};
+
+struct TaskObject {
+  std::string name;
+  int category = 0;
+  std::string split;
+  SimObject sim;
+  double mass = 0;              // nominal, kg
+  std::vector<float> feature;   // [kShapeFeatureSize]; empty when not loaded
+  std::vector<Grasp> grasps;    // empty when not loaded
+};
+
+struct ObjectSetNeeds {
+  bool feature = true;
+  bool grasps = true;
+};
+// Reads the files of every entry. Throws Error naming the file that is missing or wrong.
+std::vector<TaskObject> LoadObjects(const std::vector<ObjectEntry>& entries,
+                                    const ObjectSetNeeds& needs);
+
+}  // namespace dexremoe

@@ -1,0 +1,130 @@
+// The task: N hands turn N objects to one random goal orientation after another (paper, section IV).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/options.h"
+#include "base/random.h"
+#include "base/thread_pool.h"
+#include "sim/batch_sim.h"
+#include "task/object_set.h"
+
+namespace dexremoe {
+
+struct TaskOptions {
+  // Episode (paper, Table II).
+  int episode_length = 600;       // control steps
+  double fall_distance = 0.12;    // m from the grasp centre; ends the episode
+  std::vector<double> grasp_center = {0.0, 0.056, 0.122};  // m in W
+  double scale = 1.0;             // size factor beside the one of scale_mesh
+  // Success (paper, section IV-A).
+  double tolerance = 0.4;         // rad
+  double joint_speed_max = 10;    // rad/s, each joint
+  double speed_max = 0.04;        // m/s
+  double spin_max = 0.5;          // rad/s
+  int hold_steps = 1;             // control steps all conditions must hold
+  // Reward (paper, eq. 2), all times reward_scale.
+  double c_success = 800, c_dist = -10, c_rot = 1, c_action = -0.0002;
+  double c_joint_speed = -0.05, joint_speed_clip = 5, epsilon = 0.1;
+  double reward_scale = 0.01;
+  double c_progress = 0;          // NOTE(paper): not there; times (theta_prev - theta)
+  double c_fall = 0;              // NOTE(paper): not there; once, at a fall
+  // Actions: relative targets behind a moving average.
+  double action_scale = 0.1;      // rad per control step at a = 1
+  double ema = 1.0;               // alpha
+  double target_leash = 0.3;      // rad, targets stay this close to the joint
+  // Goals: Haar-uniform, or within goal_angle of the present orientation (a curriculum).
+  double goal_angle = 3.1416;     // rad; pi and more means Haar
+  double velocity_tolerance = 1;  // factor on speed_max and spin_max (a curriculum)
+  // Physical parameters drawn per episode: uniform in [low, high].
+  std::vector<double> mass_range = {0.06, 0.10};   // kg
+  std::vector<double> friction_range = {0.9, 1.1};
+  std::vector<double> scale_range = {1.0, 1.0};
+  void Register(Options& options);  // section "task"
+};
+
+inline constexpr int kPhysSize = 23;  // e_phys
+
+enum class EpisodeEnd : std::uint8_t { kNone, kFall, kTimeout };
+
+// What one Step gives, row = environment.
+struct StepResult {
+  std::vector<float> reward;               // [N], already times reward_scale
+  std::vector<EpisodeEnd> end;             // [N]; the environment has been reset when not kNone
+  std::vector<std::uint8_t> success;       // [N]
+  // Observations of the state before the reset of ended episodes, for the bootstrap at a timeout:
+  // rows of environments whose episode ended, in order of environment.
+  std::vector<int> ended;
+  std::vector<float> last_obs, last_phys;  // [ended, obs_size], [ended, kPhysSize]
+};
+
+// Figures of an ended episode.
+struct EpisodeRecord {
+  int env = 0;
+  int object = 0;
+  std::uint64_t episode = 0;    // counter of the environment
+  int length = 0;               // control steps lived
+  int successes = 0;
+  EpisodeEnd end = EpisodeEnd::kNone;
+  double total_reward = 0;      // sum of scaled rewards
+  double mean_angle = 0;        // rad, mean over steps of the distance to the goal
+  double mean_distance = 0;     // m, mean |dp|
+};
+
+class ReorientBatch {
+ public:
+  // Environment env gets object env % objects.size() (interleaved, so that every minibatch sees
+  // all) unless SetObjects says otherwise.
+  ReorientBatch(const TaskOptions& task, const SimOptions& sim, const HandModel& hand,
+                std::vector<TaskObject> objects, int num_envs, std::uint64_t seed,
+                ThreadPool& pool);
+  ~ReorientBatch();
+
+  int num_envs() const;
+  int num_joints() const;      // = action size
+  int obs_size() const;        // 6 * num_joints (66)
+  const std::vector<TaskObject>& objects() const;
+  const SimState& sim_state() const;
+
+  // Starts a new episode everywhere. Episode numbers start at 0 and address the random streams.
+  void ResetAll();
+  // Starts episode `episode` with object `object` in env (evaluation assigns these itself).
+  void Reset(int env, int object, std::uint64_t episode);
+
+  // actions [N, num_joints], clamped to [-1, 1]. Ended episodes are reset (auto_reset) or left
+  // where they are and no longer stepped.
+  const StepResult& Step(const std::vector<float>& actions);
+  void set_auto_reset(bool on);
+
+  // Observation before the next action, row = environment: o_t and e_phys (paper, section III-B).
+  const std::vector<float>& obs() const;    // [N, obs_size]
+  const std::vector<float>& phys() const;   // [N, kPhysSize]
+  const std::vector<int>& object() const;   // [N]
+  const std::vector<std::array<double, 4>>& goal() const;  // [N] w x y z in W
+  // Rotation distance to the goal, rad, and |dp|, m.
+  const std::vector<double>& angle() const;
+  const std::vector<double>& distance() const;
+
+  // Episodes that ended since the last call.
+  std::vector<EpisodeRecord> TakeRecords();
+
+  // Curricula change these while running.
+  TaskOptions& mutable_options();
+
+  // Pushes on the object: force in N, drawn by the caller; applied during the next step.
+  void Push(int env, const Eigen::Vector3d& force);
+
+  // Everything, bit for bit (checkpoints).
+  std::vector<std::uint8_t> Save() const;
+  void Restore(const std::vector<std::uint8_t>& bytes);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace dexremoe
