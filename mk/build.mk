@@ -32,17 +32,19 @@ define module_rules
 $(BUILD)/lib/lib$(1).a: $(call module_objects,$(1))
 	@mkdir -p $$(@D)
 	@rm -f $$@
-	ar rcs $$@ $$^
+	@ar rcs $$@ $$^
 endef
 $(foreach m,$(MODULES),$(eval $(call module_rules,$(m))))
 
 $(BUILD)/obj/%.o: %.cpp
 	@mkdir -p $(@D)
-	$(CXX) $(DEX_CXXFLAGS) $(CXXFLAGS) -c $< -o $@
+	@echo '  CXX  $<'
+	@$(CXX) $(DEX_CXXFLAGS) $(CXXFLAGS) -c $< -o $@
 
 $(TOOLS:%=$(BUILD)/bin/%): $(BUILD)/bin/%: $(BUILD)/obj/tools/%.o $(ARCHIVES)
 	@mkdir -p $(@D)
-	$(CXX) $(LDFLAGS) -Wl,--as-needed $< $(LINK_ORDER) $(LIBS) -o $@
+	@echo '  LINK $@'
+	@$(CXX) $(LDFLAGS) -Wl,--as-needed $< $(LINK_ORDER) $(LIBS) -o $@
 
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

@@ -9,7 +9,8 @@ test_sources = $(sort $(wildcard tests/$(1)/*_test.cpp))
 define test_rules
 $(BUILD)/tests/$(1)_test: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(call test_sources,$(1))) $(ARCHIVES)
 	@mkdir -p $$(@D)
-	$$(CXX) $$(LDFLAGS) -Wl,--as-needed $$(filter %.o,$$^) $$(LINK_ORDER) $$(LIBS) \
+	@echo '  LINK $$@'
+	@$$(CXX) $$(LDFLAGS) -Wl,--as-needed $$(filter %.o,$$^) $$(LINK_ORDER) $$(LIBS) \
 	  -lgmock -lgtest -lgtest_main -o $$@
 endef
 $(foreach m,$(TEST_MODULES),$(eval $(call test_rules,$(m))))
