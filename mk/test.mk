@@ -14,3 +14,17 @@ $(BUILD)/tests/$(1)_test: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(call test_sources,
 	  -lgmock -lgtest -lgtest_main -o $$@
 endef
 $(foreach m,$(TEST_MODULES),$(eval $(call test_rules,$(m))))
+
+# Optional real inputs: make test OBJECTS=DIR HAND=FILE runs the tests on them, else they skip.
+export DEX_BIN := $(BUILD)/bin
+export DEX_REAL_MESHES := $(if $(filter builtin,$(OBJECTS)),,$(OBJECTS))
+export DEX_REAL_HAND := $(if $(filter data/hand/gx11.urdf,$(HAND)),,$(HAND))
+
+.PHONY: test test-slow test-programs
+test-programs: build $(TEST_PROGRAMS)
+test: deps  ## compile and run the fast tests
+	+@$(MAKE) --no-print-directory test-programs
+	@tests/run.sh '-*Slow*' $(TEST_PROGRAMS)
+test-slow: deps  ## compile and run the slow tests
+	+@$(MAKE) --no-print-directory test-programs
+	@tests/run.sh '*Slow*' $(TEST_PROGRAMS)
