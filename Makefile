@@ -6,6 +6,20 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 
+# What a user may set. The text behind ## is shown by `make help`.
+OBJECTS ?= builtin#                ## builtin, or a folder CATEGORY/MESH with or without manifest.csv
+ENGINE ?= ode#                     ## physics engine of training and evaluation
+HAND ?= data/hand/gx11.urdf#       ## hand description
+WORKERS ?= 0#                      ## threads (0: one per processor); results do not depend on it
+SEED ?= 1#                         ## seed of everything random
+CONFIG ?= data/config/quick.toml#  ## sizes and hyper-parameters of all stages
+OUT ?= results/quick$(if $(filter builtin,$(OBJECTS)),,-$(notdir $(OBJECTS:%/=%)))#  ## folder of the run
+
+comma := ,
+empty :=
+space := $(empty) $(empty)
+commas = $(subst $(space),$(comma),$(strip $(1)))
+
 include mk/deps.mk
 include mk/build.mk
 include mk/test.mk
@@ -16,4 +30,5 @@ help:  ## this list
 	@printf 'dexremoe: in-hand reorientation with mixtures of experts, on CPUs.\n\nTargets:\n'
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  \1\t\2/' | expand -t 16
 	@printf '\nVariables:\n'
-	@grep -hE '^[A-Z]+ \?=.*## ' $(MAKEFILE_LIST) | sed -E 's/^([A-Z]+) \?= *(.*[^ ]) *## (.*)/  \1=\2\t\3/' | expand -t 28
+	@grep -hE '^[A-Z]+ [?]=.*## ' Makefile | sed -E 's/^([A-Z]+) [?]= *([^#]*)# *## (.*)/  \1=\2\t\3/' \
+	  | sed -E 's/=results.*\t/=results\/quick\t/' | expand -t 34

@@ -1,0 +1,132 @@
+# The experiment: from meshes to tables, figures and films. `make quick` runs all of it at small size.
+#
+# A run lives in $(OUT); what it makes of its objects in data/objects/$(RUN)/NAME/. Stages depend on
+# their inputs and their configuration file; tools are order-only, so that a rebuilt tool never
+# discards a training. settings.txt holds the variables of the run and changes only when they do.
+
+RUN    := $(notdir $(OUT))
+BIN    := $(BUILD)/bin
+MESHES := $(if $(filter builtin,$(OBJECTS)),meshes/builtin,$(OBJECTS))
+OBJDIR := data/objects/$(RUN)
+COMMON := --config=$(CONFIG) --seed=$(SEED)
+SIM    := --sim.engine=$(ENGINE) --hand=$(HAND) --workers=$(WORKERS)
+
+.PHONY: quick
+quick: deps  ## meshes to tables, figures and films at small size (about 15 minutes)
+	+@$(MAKE) --no-print-directory build
+	+@$(MAKE) --no-print-directory EXPERIMENT=1 experiment
+	@printf '\nDone. Look at:\n'; printf '  %s\n' $(PRODUCTS)
+
+TABLES  := $(OUT)/tables/table1.md
+FIGURES := $(addprefix $(OUT)/figures/,curves.png objects.png parts.png per_object.png tsne.png \
+  hand.png strip.png episode.mp4)
+PRODUCTS := $(TABLES) $(FIGURES)
+
+.PHONY: experiment
+experiment: $(PRODUCTS)
+
+# Rewritten only when a variable changed, so that what depends on it is remade exactly then.
+$(OUT)/settings.txt: FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' 'OBJECTS=$(OBJECTS)' 'ENGINE=$(ENGINE)' 'HAND=$(HAND)' 'SEED=$(SEED)' 'CONFIG=$(CONFIG)' >$@.tmp
+	@if cmp -s $@.tmp $@; then rm $@.tmp; else mv $@.tmp $@; fi
+FORCE:
+
+# --- Objects ------------------------------------------------------------------------------------
+
+meshes/builtin/manifest.csv: $(wildcard data/recipes/*/* data/recipes/*.*) | $(BIN)/make_objects
+	$(BIN)/make_objects --out=$(@D)
+
+# objects.mk names the objects of the run; make reads it once it is there (see the include below).
+$(OUT)/objects.mk: $(OUT)/settings.txt $(CONFIG) \
+    $(if $(filter builtin,$(OBJECTS)),meshes/builtin/manifest.csv) | $(BIN)/list_objects
+	$(BIN)/list_objects $(COMMON) --meshes=$(MESHES) --folder=$(OBJDIR) --makefile=$@ \
+	  --out=$(OUT)/objects.csv
+
+ifdef EXPERIMENT
+include $(OUT)/objects.mk
+endif
+OBJECT_FILES = $(foreach name,$(OBJECT_NAMES),$(OBJDIR)/$(name)/$(1).h5)
+
+define object_rules
+$(OBJDIR)/$(1)/mesh.h5: $(MESH_$(1)) $(CONFIG) | $(BIN)/scale_mesh
+	$(BIN)/scale_mesh --config=$(CONFIG) --mesh=$$< --name=$(1) --category=$(CATEGORY_$(1)) --out=$$@ >$(OBJDIR)/$(1).log
+endef
+$(foreach name,$(OBJECT_NAMES),$(eval $(call object_rules,$(name))))
+
+$(OBJDIR)/%/parts.h5: $(OBJDIR)/%/mesh.h5 | $(BIN)/decompose
+	$(BIN)/decompose --config=$(CONFIG) --mesh=$< --out=$@ >$(@D)/decompose.log
+$(OBJDIR)/%/cloud.h5: $(OBJDIR)/%/mesh.h5 | $(BIN)/sample_cloud
+	$(BIN)/sample_cloud $(COMMON) --mesh=$< --out=$@ >$(@D)/cloud.log
+$(OBJDIR)/%/shape.h5: $(OBJDIR)/%/cloud.h5 $(OUT)/shape_net.h5 | $(BIN)/describe_shape
+	$(BIN)/describe_shape --net=$(OUT)/shape_net.h5 --cloud=$< --out=$@ >$(@D)/shape.log
+$(OBJDIR)/%/grasps.h5: $(OBJDIR)/%/parts.h5 $(OUT)/settings.txt | $(BIN)/find_grasps
+	$(BIN)/find_grasps $(COMMON) $(SIM) --mesh=$(@D)/mesh.h5 --parts=$< --out=$@ | tee $(@D)/grasps.log
+
+$(OUT)/shape_net.h5: $(OUT)/objects.mk $(call OBJECT_FILES,cloud) | $(BIN)/train_shape
+	$(BIN)/train_shape $(COMMON) --workers=$(WORKERS) --objects=$(OUT)/objects.csv --out=$@
+
+READY := $(OUT)/objects.mk $(call OBJECT_FILES,parts) $(call OBJECT_FILES,shape) $(call OBJECT_FILES,grasps)
+
+# --- Training -----------------------------------------------------------------------------------
+# A training writes its checkpoints to NAME.running.h5 and takes up from there after a kill.
+
+# $(1): tool and its inputs
+train = mkdir -p $(OUT)/curves && \
+  $(BIN)/$(1) $(COMMON) $(SIM) --objects=$(OUT)/objects.csv --out=$(@:.h5=.running.h5) --resume \
+    --curve=$(OUT)/curves/$(notdir $(@:.h5=.csv)) && mv $(@:.h5=.running.h5) $@
+
+EXPERTS := generalist airplane train animal
+expert_categories_generalist := airplane,animal,head,shoe,train,vehicle
+expert_categories_airplane := airplane
+expert_categories_train := train
+expert_categories_animal := animal
+EXPERT_FILES := $(EXPERTS:%=$(OUT)/expert_%.h5)
+
+$(OUT)/base.h5: $(READY) | $(BIN)/train_base
+	$(call train,train_base)
+$(EXPERT_FILES): $(OUT)/expert_%.h5: $(OUT)/base.h5 | $(BIN)/train_expert
+	$(call train,train_expert --base=$< --categories=$(expert_categories_$*))
+$(OUT)/gate.h5: $(EXPERT_FILES) | $(BIN)/train_gate
+	$(call train,train_gate --experts=$(call commas,$(EXPERT_FILES)))
+
+# --- Evaluation ---------------------------------------------------------------------------------
+
+METHODS := untrained base uniform gate
+LABELS  := Untrained,Base policy,Uniform average,DexReMoE
+policy_untrained = --policy=untrained
+policy_base      = --policy=$(OUT)/base.h5
+policy_uniform   = --policy=$(OUT)/gate.h5 --uniform_gate
+policy_gate      = --policy=$(OUT)/gate.h5
+EVAL_FILES := $(METHODS:%=$(OUT)/eval/%.h5)
+
+$(EVAL_FILES): $(OUT)/eval/%.h5: $(OUT)/gate.h5 $(OUT)/base.h5 | $(BIN)/evaluate
+	$(BIN)/evaluate $(COMMON) $(SIM) $(policy_$*) --objects=$(OUT)/objects.csv --split=all --out=$@ \
+	  --trace=$(OUT)/trace/$*.h5 >$(OUT)/eval/$*.txt
+
+$(OUT)/tables/table1.md: $(EVAL_FILES) data/paper_tables.csv | $(BIN)/tabulate
+	$(BIN)/tabulate --eval=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" \
+	  --paper=data/paper_tables.csv --out=$(basename $@)
+
+$(OUT)/tsne.h5: $(OUT)/gate.h5 $(OUT)/shape_net.h5 | $(BIN)/embed_gate
+	$(BIN)/embed_gate $(COMMON) --workers=$(WORKERS) --gate=$< --net=$(OUT)/shape_net.h5 \
+	  --objects=$(OUT)/objects.csv --out=$@
+
+# --- Figures ------------------------------------------------------------------------------------
+
+$(OUT)/figures/curves.png: $(OUT)/gate.h5 | $(BIN)/plot
+	$(BIN)/plot --kind=curves --in=$(call commas,$(wildcard $(OUT)/curves/*.csv)) --out=$@
+$(OUT)/figures/per_object.png: $(EVAL_FILES) | $(BIN)/plot
+	$(BIN)/plot --kind=bars --in=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" --out=$@
+$(OUT)/figures/tsne.png: $(OUT)/tsne.h5 | $(BIN)/plot
+	$(BIN)/plot --kind=tsne --in=$< --out=$@
+$(OUT)/figures/objects.png: $(OUT)/objects.mk $(call OBJECT_FILES,mesh) | $(BIN)/render
+	$(BIN)/render --kind=objects --objects=$(OUT)/objects.csv --out=$@
+$(OUT)/figures/parts.png: $(OUT)/objects.mk $(call OBJECT_FILES,parts) | $(BIN)/render
+	$(BIN)/render --kind=parts --objects=$(OUT)/objects.csv --out=$@
+$(OUT)/figures/hand.png: $(HAND) $(OUT)/settings.txt | $(BIN)/render
+	$(BIN)/render --kind=hand --hand=$(HAND) --out=$@
+$(OUT)/figures/strip.png: $(OUT)/eval/gate.h5 | $(BIN)/render
+	$(BIN)/render --kind=strip --hand=$(HAND) --trace=$(OUT)/trace/gate.h5 --objects=$(OUT)/objects.csv --out=$@
+$(OUT)/figures/episode.mp4: $(OUT)/eval/gate.h5 | $(BIN)/render
+	$(BIN)/render --kind=video --hand=$(HAND) --trace=$(OUT)/trace/gate.h5 --objects=$(OUT)/objects.csv --out=$@
