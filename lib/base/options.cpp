@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -91,6 +92,38 @@ std::string FlagText(const std::string& path, const std::string& key, const toml
       "{}: key '{}': expected a number, text, true, false or a list, found another type", path, key));
 }
 
+// What a number of type T must look like; "" when `text` does. CLI11 itself takes -1 for an unsigned
+// number, and out-of-range ones. A whole number is rewritten, as CLI11 reads 010 as octal.
+template <typename T>
+std::string NumberFault(std::string& text) {
+  T value{};
+  const char* end = text.data() + text.size();
+  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const auto [stop, code] = std::from_chars(begin, end, value);
+  if (code == std::errc() && stop == end) {
+    if constexpr (std::is_integral_v<T>) text = fmt::format("{}", value);
+    return "";
+  }
+  if constexpr (std::is_floating_point_v<T>)
+    return fmt::format("expected a number, found '{}'", text);
+  else
+    return fmt::format("expected a whole number from {} to {}, found '{}'",
+                       std::numeric_limits<T>::min(), std::numeric_limits<T>::max(), text);
+}
+
+// Leaves the last of several words for the same option: the command line over the configuration,
+// a later file over an earlier one, lists replaced and not grown. All --config words stay.
+void KeepLast(std::vector<std::string>& words) {
+  const auto name = [](const std::string& word) { return word.substr(0, word.find('=')); };
+  std::vector<std::string> kept;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool later = std::any_of(words.begin() + static_cast<std::ptrdiff_t>(i) + 1, words.end(),
+                                   [&](const auto& word) { return name(word) == name(words[i]); });
+    if (!later || name(words[i]) == "--config") kept.push_back(words[i]);
+  }
+  words = std::move(kept);
+}
+
 void CheckRange(const std::string& name, const std::string& text, double low, double high) {
   std::size_t used = 0;
   double value = NAN;
@@ -103,6 +136,12 @@ void CheckRange(const std::string& name, const std::string& text, double low, do
   if (!(value >= low && value <= high))
     throw CLI::ValidationError(
         name, fmt::format("expected a value in [{}, {}], found {}", low, high, text));
+}
+
+template <typename T>
+void AddNumberCheck(CLI::Option* option) {
+  if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>)
+    option->transform(CLI::Validator([](std::string& text) { return NumberFault<T>(text); }, ""));
 }
 
 }  // namespace
@@ -165,15 +204,13 @@ OptionHandle Options::Add(const std::string& name, T* value, const std::string& 
     option = app_->add_option("--" + name, *value, help);
     option->capture_default_str();
   }
-  if constexpr (requires { value->push_back({}); } && !std::is_same_v<T, std::string>) {
+  if constexpr (requires { typename T::value_type; } && !std::is_same_v<T, std::string>) {
     option->delimiter(',');
-    option->expected(1);
-  }
-  option->multi_option_policy(name == "config" ? CLI::MultiOptionPolicy::TakeAll
-                                               : CLI::MultiOptionPolicy::TakeLast);
-  if constexpr (requires { value->push_back({}); } && !std::is_same_v<T, std::string>) {
     option->expected(1, CLI::detail::expected_max_vector_size);
-    if (name != "config") option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    AddNumberCheck<typename T::value_type>(option);
+  } else {
+    option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+    AddNumberCheck<T>(option);
   }
   entries_.push_back({name, [value] { return Print(*value); }});
   return {this, option, entries_.size() - 1};
@@ -258,12 +295,6 @@ bool Options::Parse(int argc, const char* const* argv) {
     if (!word.starts_with("--config=")) continue;
     for (std::string& flag : ReadConfig(word.substr(9))) from_config.push_back(std::move(flag));
   }
-  // A list given on the command line replaces the configured one instead of growing it.
-  std::erase_if(from_config, [&](const std::string& flag) {
-    const std::string stem = flag.substr(0, flag.find('=') + 1);
-    return std::any_of(from_command_line.begin(), from_command_line.end(),
-                       [&](const std::string& word) { return word.starts_with(stem); });
-  });
   std::vector<std::string> words(std::move(from_command_line));
   words.insert(words.begin(), from_config.begin(), from_config.end());
   for (const std::string& word : words) {
@@ -275,6 +306,7 @@ bool Options::Parse(int argc, const char* const* argv) {
     for (const Entry& entry : entries_) names.push_back(entry.name);
     throw UsageError(fmt::format("unknown option --{}{}", name, Suggestion(name, names)));
   }
+  KeepLast(words);
   std::reverse(words.begin(), words.end());  // CLI11 takes the last word first
   try {
     app_->parse(words);

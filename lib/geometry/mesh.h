@@ -1,8 +1,9 @@
 // Triangle meshes and convex parts.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace dexremoe {

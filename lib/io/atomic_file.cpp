@@ -24,9 +24,10 @@ void CommitTemporary(const std::string& temporary, const std::string& path) {
   const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
   const int error = errno;
   if (descriptor >= 0) close(descriptor);
+  std::error_code code, ignored;
+  if (synced) std::filesystem::rename(temporary, path, code);
+  if (!synced || code) std::filesystem::remove(temporary, ignored);
   if (!synced) Fail("{}: cannot be written: {}", path, std::strerror(error));
-  std::error_code code;
-  std::filesystem::rename(temporary, path, code);
   if (code) Fail("{}: cannot be renamed into place: {}", path, code.message());
 }
 
@@ -52,7 +53,12 @@ void AtomicFile::Commit() {
   if (std::fflush(file_) != 0) Fail("{}: cannot be written: {}", path_, std::strerror(errno));
   const int closed = std::fclose(file_);
   file_ = nullptr;
-  if (closed != 0) Fail("{}: cannot be written: {}", path_, std::strerror(errno));
+  if (closed != 0) {
+    const int error = errno;
+    std::error_code ignored;
+    std::filesystem::remove(temporary_, ignored);
+    Fail("{}: cannot be written: {}", path_, std::strerror(error));
+  }
   CommitTemporary(temporary_, path_);
 }
 

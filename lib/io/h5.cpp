@@ -58,7 +58,12 @@ std::string DimsText(const std::vector<std::int64_t>& dims) {
   return "[" + text + "]";
 }
 
-void WriteAttribute(hid_t object, const std::string& name, const std::string& value) {
+void WriteAttribute(hid_t object, const std::string& path, const std::string& name,
+                    const std::string& value) {
+  constexpr std::size_t kLimit = 64000;  // HDF5 keeps attributes of up to 64 KiB
+  if (value.size() > kLimit)
+    Fail("{}: attribute '{}': expected at most {} bytes, found {}", path, name, kLimit,
+         value.size());
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, std::max<std::size_t>(1, value.size()));
   H5Tset_strpad(type, H5T_STR_NULLPAD);
@@ -66,7 +71,8 @@ void WriteAttribute(hid_t object, const std::string& name, const std::string& va
   const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
                          H5Aclose);
   const std::string padded = value.empty() ? std::string(1, '\0') : value;
-  DEX_CHECK(attribute >= 0 && H5Awrite(attribute, type, padded.data()) >= 0);
+  if (attribute < 0 || H5Awrite(attribute, type, padded.data()) < 0)
+    Fail("{}: attribute '{}' cannot be written", path, name);
 }
 
 std::string ReadAttribute(hid_t object, const std::string& path, const std::string& name) {
@@ -114,10 +120,21 @@ hid_t CreateDataset(hid_t file, const std::string& name, hid_t type,
   return H5Dcreate2(file, name.c_str(), type, space, links, creation, H5P_DEFAULT);
 }
 
-void WriteDoc(hid_t dataset, const H5Doc& doc) {
-  WriteAttribute(dataset, "unit", doc.unit);
-  WriteAttribute(dataset, "dims", doc.dims);
-  WriteAttribute(dataset, "doc", doc.doc);
+void WriteDoc(hid_t dataset, const std::string& path, const H5Doc& doc) {
+  WriteAttribute(dataset, path, "unit", doc.unit);
+  WriteAttribute(dataset, path, "dims", doc.dims);
+  WriteAttribute(dataset, path, "doc", doc.doc);
+}
+
+void WriteRootAttributes(hid_t file, const std::string& path, const H5Format& format,
+                         const Provenance& provenance, const std::string& inputs) {
+  WriteAttribute(file, path, "format", format.name);
+  WriteAttribute(file, path, "format_version", fmt::format("{}", format.version));
+  WriteAttribute(file, path, "tool", provenance.tool);
+  WriteAttribute(file, path, "version", kVersion);
+  WriteAttribute(file, path, "options", provenance.options);
+  WriteAttribute(file, path, "seed", fmt::format("{}", provenance.seed));
+  WriteAttribute(file, path, "inputs", inputs);
 }
 
 }  // namespace
@@ -134,18 +151,20 @@ H5Writer::H5Writer(std::string path, H5Format format, const Provenance& provenan
   for (const std::string& input : provenance.inputs) inputs += HashLine(input);
   file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   if (file_ < 0) Fail("{}: cannot be created", path_);
-  WriteAttribute(file_, "format", format.name);
-  WriteAttribute(file_, "format_version", fmt::format("{}", format.version));
-  WriteAttribute(file_, "tool", provenance.tool);
-  WriteAttribute(file_, "version", kVersion);
-  WriteAttribute(file_, "options", provenance.options);
-  WriteAttribute(file_, "seed", fmt::format("{}", provenance.seed));
-  WriteAttribute(file_, "inputs", inputs);
+  try {
+    WriteRootAttributes(file_, path_, format, provenance, inputs);
+  } catch (...) {
+    Discard();
+    throw;
+  }
 }
 
-H5Writer::~H5Writer() {
+H5Writer::~H5Writer() { Discard(); }
+
+void H5Writer::Discard() {
   if (file_ < 0) return;
   H5Fclose(file_);
+  file_ = -1;
   std::error_code ignored;
   std::filesystem::remove(temporary_, ignored);
 }
@@ -159,7 +178,7 @@ void H5Writer::Write(const std::string& name, const std::vector<T>& values,
   if (!values.empty() &&
       H5Dwrite(dataset, NativeType<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     Fail("{}: dataset '{}' cannot be written", path_, name);
-  WriteDoc(dataset, doc);
+  WriteDoc(dataset, path_, doc);
 }
 
 void H5Writer::WriteStrings(const std::string& name, const std::vector<std::string>& values,
@@ -177,7 +196,7 @@ void H5Writer::WriteStrings(const std::string& name, const std::vector<std::stri
   if (!values.empty() &&
       H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.data()) < 0)
     Fail("{}: dataset '{}' cannot be written", path_, name);
-  WriteDoc(dataset, doc);
+  WriteDoc(dataset, path_, doc);
 }
 
 void H5Writer::Commit() {

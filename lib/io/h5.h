@@ -67,6 +67,7 @@ class H5Writer {
   void Commit();
 
  private:
+  void Discard();
   std::string path_, temporary_;
   std::int64_t file_ = -1;
 };

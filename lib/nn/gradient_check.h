@@ -8,10 +8,10 @@
 namespace dexremoe {
 
 struct GradientReport {
-  double worst = 0;        // largest |analytic - numeric| / max(1, |analytic|, |numeric|)
-  std::size_t index = 0;   // where
+  double worst = 0;       // largest |analytic - numeric| / max(1, |analytic|, |numeric|)
+  std::size_t index = 0;  // where
   double analytic = 0, numeric = 0;
-  bool ok = false;         // worst <= tolerance
+  bool ok = false;  // worst <= tolerance
   std::string Text() const;
 };
 

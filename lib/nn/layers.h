@@ -1,5 +1,6 @@
-// Layers: forward beside backward, on row-major matrices (row = sample), for float (training, matrix
-// products through oneDNN) and double (gradient checks). No state: activations are the caller's.
+// Layers: forward beside backward, on row-major matrices (row = sample), for float (training,
+// matrix products through oneDNN) and double (gradient checks). No state: activations are the
+// caller's.
 //
 // Shapes once for all: n samples, c inputs, k outputs; x [n,c], w [k,c], b [k], y [n,k].
 // Backward functions take dy = dLoss/dy and ADD to parameter gradients; input gradients are set.
@@ -12,8 +13,8 @@ namespace dexremoe {
 // C [m,n] = alpha * op(A) op(B) + beta * C, row-major; op is the transpose when asked for.
 // One thread; callers spread row blocks over a ThreadPool. Results do not depend on other threads.
 template <typename T>
-void Gemm(bool transpose_a, bool transpose_b, std::int64_t m, std::int64_t n, std::int64_t k, T alpha,
-          const T* a, std::int64_t lda, const T* b, std::int64_t ldb, T beta, T* c,
+void Gemm(bool transpose_a, bool transpose_b, std::int64_t m, std::int64_t n, std::int64_t k,
+          T alpha, const T* a, std::int64_t lda, const T* b, std::int64_t ldb, T beta, T* c,
           std::int64_t ldc);
 
 // y = x w^T + b.

@@ -1,4 +1,4 @@
-// A stack of linear layers with ELU between them (and after the last, when asked for).
+// A stack of linear layers with an activation between them (and after the last, when asked for).
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,14 @@
 
 namespace dexremoe {
 
+enum class Activation { kElu, kRelu };
+
 class Mlp {
  public:
   // widths = {inputs, hidden..., outputs}; adds "name/0/weight" [k,c] and "name/0/bias" [k] ... to
   // the layout.
-  Mlp(ParamLayout& layout, const std::string& name, std::vector<int> widths, bool elu_at_end);
+  Mlp(ParamLayout& layout, const std::string& name, std::vector<int> widths, bool activate_end,
+      Activation activation = Activation::kElu);
 
   int inputs() const { return widths_.front(); }
   int outputs() const { return widths_.back(); }
@@ -35,14 +38,31 @@ class Mlp {
   // PyTorch's default for linear layers: U(-1/sqrt(c), 1/sqrt(c)) for weights; biases zero.
   // The last layer's weights are multiplied by `last_scale`.
   void Initialize(Rng& rng, double last_scale, float* params) const;
+  // U(-sqrt(6/c), sqrt(6/c)) for weights, zero biases: keeps the size of signals through layers of
+  // ReLUs (He et al. 2015).
+  void InitializeHe(Rng& rng, float* params) const;
+  // Rescales and shifts every layer so that over the rows x [n, inputs] each of its outputs has
+  // mean 0 and variance 1 before the activation (Salimans & Kingma 2016, section 3). Outputs that
+  // do not vary are only shifted.
+  void NormalizeOnData(std::int64_t n, const float* x, float* params) const;
 
   // Indices into the layout.
   int weight(int layer) const { return first_block_ + 2 * layer; }
   int bias(int layer) const { return first_block_ + 2 * layer + 1; }
 
  private:
+  template <typename T>
+  void ForwardBlock(const T* params, std::int64_t n, std::int64_t row, std::int64_t rows,
+                    const T* x, T* activations) const;
+  template <typename T>
+  void BackwardBlock(const T* params, std::int64_t n, std::int64_t row, std::int64_t rows,
+                     const T* x, const T* activations, T* dy, T* dx, T* grads, T* scratch) const;
+  // Weights U(-bound, bound), zero biases.
+  void InitializeLayer(Rng& rng, int layer, double bound, float* params) const;
+
   std::vector<int> widths_;
-  bool elu_at_end_;
+  bool activate_end_;
+  Activation activation_;
   int first_block_;
   std::vector<std::int64_t> weight_offset_, bias_offset_;
 };

@@ -20,37 +20,37 @@ namespace dexremoe {
 
 struct SimOptions {
   std::string engine = "ode";
-  int substeps = 2;            // physics steps per control step (evidence: README, "Physics")
-  double control_rate = 60;    // Hz (paper)
-  double gravity = 9.81;       // m/s^2 along +z_P (palm down)
-  int max_contacts = 12;       // per environment
+  int substeps = 2;                 // physics steps per control step (evidence: README, "Physics")
+  double control_rate = 60;         // Hz (paper)
+  double gravity = 9.81;            // m/s^2 along +z_P (palm down)
+  int max_contacts = 12;            // per environment
   void Register(Options& options);  // section "sim"
 };
 
 // An object as the engines see it. Body frame O: origin at the centre of mass.
 struct SimObject {
   std::string name;
-  ConvexParts parts;                                  // in O, at scale 1; m
+  ConvexParts parts;                                           // in O, at scale 1; m
   Eigen::Matrix3d unit_inertia = Eigen::Matrix3d::Identity();  // inertia / mass; m^2
-  double radius = 0;                                  // bounding sphere about O; m
+  double radius = 0;                                           // bounding sphere about O; m
 };
 
 // Physical parameters of one environment; constant during an episode.
 struct EnvPhysics {
-  double mass = 0.1;                                   // kg
-  Eigen::Vector3d com = Eigen::Vector3d::Zero();       // offset of the centre of mass in O; m
-  double friction = 1.0;                               // Coulomb coefficient, hand-object
-  double scale = 1.0;                                  // uniform size factor
-  double kp_factor = 1.0, kd_factor = 1.0;             // servo gains relative to the hand's
+  double mass = 0.1;                                      // kg
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();          // offset of the centre of mass in O; m
+  double friction = 1.0;                                  // Coulomb coefficient, hand-object
+  double scale = 1.0;                                     // uniform size factor
+  double kp_factor = 1.0, kd_factor = 1.0;                // servo gains relative to the hand's
   Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, 9.81);  // m/s^2 in W
 };
 
 // State of one environment in generalised coordinates.
 struct EnvState {
-  std::vector<double> q, qd;                           // joints: rad, rad/s
-  Pose X_WO;                                           // object pose
-  Eigen::Vector3d v = Eigen::Vector3d::Zero();         // object centre-of-mass velocity in W; m/s
-  Eigen::Vector3d w = Eigen::Vector3d::Zero();         // object angular velocity in W; rad/s
+  std::vector<double> q, qd;                    // joints: rad, rad/s
+  Pose X_WO;                                    // object pose
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();  // object centre-of-mass velocity in W; m/s
+  Eigen::Vector3d w = Eigen::Vector3d::Zero();  // object angular velocity in W; rad/s
 };
 
 // State arrays of all environments after the last step, row = environment, double.
@@ -86,7 +86,8 @@ class BatchSim {
   // Copies a state in; velocities included, contact history cleared.
   virtual void SetState(int env, const EnvState& state) = 0;
   EnvState GetState(int env) const;
-  // The engine's whole state of env as bytes, and back: a restored environment continues bit for bit.
+  // The engine's whole state of env as bytes, and back: a restored environment continues bit for
+  // bit.
   virtual std::vector<std::uint8_t> Save(int env) const = 0;
   virtual void Restore(int env, std::span<const std::uint8_t> bytes) = 0;
 

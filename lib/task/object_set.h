@@ -1,4 +1,5 @@
-// The objects of an experiment: which they are (objects.csv) and what the stages before made of them.
+// The objects of an experiment: which they are (objects.csv) and what the stages before made of
+// them.
 #pragma once
 
 #include <array>
@@ -25,19 +26,20 @@ int CategoryIndex(const std::string& name);
 struct ObjectEntry {
   std::string name;
   std::string category;
-  std::string split;    // "train" or "ood" (out of distribution)
-  std::string mesh;     // source mesh
-  std::string folder;   // holds mesh.h5, parts.h5, cloud.h5, shape.h5
-  std::string grasps;   // grasps.h5
+  std::string split;   // "train" or "ood" (out of distribution)
+  std::string mesh;    // source mesh
+  std::string folder;  // holds mesh.h5, parts.h5, cloud.h5, shape.h5
+  std::string grasps;  // grasps.h5
 };
 std::vector<ObjectEntry> ReadObjectList(const std::string& path);
 void WriteObjectList(const std::string& path, const std::vector<ObjectEntry>& entries);
 
 // A stable grasp: start of an episode.
 struct Grasp {
-  std::vector<double> q;        // joint angles, rad
-  std::vector<double> target;   // servo targets, rad
-  Pose X_WO;                    // object pose
+  std::vector<double> q;       // joint angles, rad
+  std::vector<double> target;  // servo targets, rad
+  Pose X_WO;                   // object pose
+  double scale = 1;            // size factor it was found with
 };
 
 struct TaskObject {
@@ -45,16 +47,20 @@ struct TaskObject {
   int category = 0;
   std::string split;
   SimObject sim;
-  double mass = 0;              // nominal, kg
-  std::vector<float> feature;   // [kShapeFeatureSize]; empty when not loaded
-  std::vector<Grasp> grasps;    // empty when not loaded
+  double mass = 0;             // nominal, kg
+  std::vector<float> feature;  // [kShapeFeatureSize]; empty when not loaded
+  std::vector<Grasp> grasps;   // empty when not loaded
 };
+
+// mesh.h5 and parts.h5 alone, for stages before shape.h5 and the grasps exist. Throws Error.
+TaskObject LoadSimObject(const std::string& mesh_path, const std::string& parts_path);
 
 struct ObjectSetNeeds {
   bool feature = true;
   bool grasps = true;
 };
-// Reads the files of every entry. Throws Error naming the file that is missing or wrong.
+// Reads mesh.h5 and parts.h5 of every entry, shape.h5 and the grasps where needed. Throws Error
+// naming the file that is missing or wrong.
 std::vector<TaskObject> LoadObjects(const std::vector<ObjectEntry>& entries,
                                     const ObjectSetNeeds& needs);
 

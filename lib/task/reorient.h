@@ -1,4 +1,5 @@
-// The task: N hands turn N objects to one random goal orientation after another (paper, section IV).
+// The task: N hands turn N objects to one random goal orientation after another (paper, section
+// IV).
 #pragma once
 
 #include <array>
@@ -17,45 +18,56 @@ namespace dexremoe {
 
 struct TaskOptions {
   // Episode (paper, Table II).
-  int episode_length = 600;       // control steps
-  double fall_distance = 0.12;    // m from the grasp centre; ends the episode
-  std::vector<double> grasp_center = {0.0, 0.056, 0.122};  // m in W
-  double scale = 1.0;             // size factor beside the one of scale_mesh
+  int episode_length = 600;     // control steps
+  double fall_distance = 0.12;  // m from the grasp centre; ends the episode
+  std::vector<double> grasp_center = {0.0, 0.064, 0.11};  // m in W
+  double scale = 1.0;  // size factor beside the one of scale_mesh
   // Success (paper, section IV-A).
-  double tolerance = 0.4;         // rad
-  double joint_speed_max = 10;    // rad/s, each joint
-  double speed_max = 0.04;        // m/s
-  double spin_max = 0.5;          // rad/s
-  int hold_steps = 1;             // control steps all conditions must hold
+  double tolerance = 0.4;       // rad
+  double joint_speed_max = 10;  // rad/s, each joint
+  double speed_max = 0.04;      // m/s
+  double spin_max = 0.5;        // rad/s
+  int hold_steps = 1;           // control steps all conditions must hold
   // Reward (paper, eq. 2), all times reward_scale.
   double c_success = 800, c_dist = -10, c_rot = 1, c_action = -0.0002;
   double c_joint_speed = -0.05, joint_speed_clip = 5, epsilon = 0.1;
   double reward_scale = 0.01;
-  double c_progress = 0;          // NOTE(paper): not there; times (theta_prev - theta)
-  double c_fall = 0;              // NOTE(paper): not there; once, at a fall
+  double c_progress = 0;  // NOTE(paper): not there; times (theta_prev - theta)
+  double c_fall = 0;      // NOTE(paper): not there; once, at a fall
   // Actions: relative targets behind a moving average.
-  double action_scale = 0.1;      // rad per control step at a = 1
-  double ema = 1.0;               // alpha
-  double target_leash = 0.3;      // rad, targets stay this close to the joint
+  double action_scale = 0.1;  // rad per control step at a = 1
+  double ema = 1.0;           // alpha
+  double target_leash = 0.3;  // rad, targets stay this close to the joint
+  // What o_t shows of the last three commands: "action" (the averaged action that was executed) or
+  // "target" (the joint targets, scaled like the joints; what the paper's lineage shows).
+  std::string observe = "action";
   // Goals: Haar-uniform, or within goal_angle of the present orientation (a curriculum).
   double goal_angle = 3.1416;     // rad; pi and more means Haar
   double velocity_tolerance = 1;  // factor on speed_max and spin_max (a curriculum)
-  // Physical parameters drawn per episode: uniform in [low, high].
-  std::vector<double> mass_range = {0.06, 0.10};   // kg
+  // Physical parameters drawn per episode: uniform in [low, high]. The size is the grasp's: it was
+  // drawn from scale_range when the grasp was found.
+  std::vector<double> mass_range = {0.06, 0.10};  // kg
   std::vector<double> friction_range = {0.9, 1.1};
   std::vector<double> scale_range = {1.0, 1.0};
-  void Register(Options& options);  // section "task"
+  std::vector<double> com_range = {0.0, 0.0};  // m, offset of the centre of mass, each axis
+  void Register(Options& options);             // section "task"
+  void Check() const;                          // throws UsageError for malformed lists
 };
 
-inline constexpr int kPhysSize = 23;  // e_phys
+// e_phys (paper, section III-B): mass 1 (kg), centre of mass 3 (m, O), friction 1, scale 1,
+// position 3 (m, W), orientation 4 (w >= 0), velocity 3 (m/s, W), spin 3 (rad/s, W) and
+// q_WO * conj(q_WG) 4 (w >= 0).
+// NOTE(paper): the listed parts sum to 19 of 23, and without the goal the policy cannot know its
+// target, so the missing 4 are taken to be the relative quaternion.
+inline constexpr int kPhysSize = 23;
 
 enum class EpisodeEnd : std::uint8_t { kNone, kFall, kTimeout };
 
 // What one Step gives, row = environment.
 struct StepResult {
-  std::vector<float> reward;               // [N], already times reward_scale
-  std::vector<EpisodeEnd> end;             // [N]; the environment has been reset when not kNone
-  std::vector<std::uint8_t> success;       // [N]
+  std::vector<float> reward;          // [N], already times reward_scale
+  std::vector<EpisodeEnd> end;        // [N]; the environment has been reset when not kNone
+  std::vector<std::uint8_t> success;  // [N]
   // Observations of the state before the reset of ended episodes, for the bootstrap at a timeout:
   // rows of environments whose episode ended, in order of environment.
   std::vector<int> ended;
@@ -66,31 +78,41 @@ struct StepResult {
 struct EpisodeRecord {
   int env = 0;
   int object = 0;
-  std::uint64_t episode = 0;    // counter of the environment
-  int length = 0;               // control steps lived
+  std::uint64_t episode = 0;  // number that addressed the random streams
+  int length = 0;             // control steps lived
   int successes = 0;
   EpisodeEnd end = EpisodeEnd::kNone;
-  double total_reward = 0;      // sum of scaled rewards
-  double mean_angle = 0;        // rad, mean over steps of the distance to the goal
-  double mean_distance = 0;     // m, mean |dp|
+  double total_reward = 0;   // sum of scaled rewards
+  double mean_angle = 0;     // rad, mean over steps of the distance to the goal
+  double mean_distance = 0;  // m, mean |dp|
 };
 
 class ReorientBatch {
  public:
   // Environment env gets object env % objects.size() (interleaved, so that every minibatch sees
-  // all) unless SetObjects says otherwise.
+  // all) unless Reset says otherwise. Every object needs grasps of this hand, found at a scale that
+  // `task` allows. Throws Error naming the object. `pool` must outlive the batch.
   ReorientBatch(const TaskOptions& task, const SimOptions& sim, const HandModel& hand,
                 std::vector<TaskObject> objects, int num_envs, std::uint64_t seed,
+                ThreadPool& pool);
+  // The same on a simulator of the caller's that holds `objects` in this order.
+  ReorientBatch(const TaskOptions& task, const SimOptions& sim_options, const HandModel& hand,
+                std::vector<TaskObject> objects, std::unique_ptr<BatchSim> sim, std::uint64_t seed,
                 ThreadPool& pool);
   ~ReorientBatch();
 
   int num_envs() const;
-  int num_joints() const;      // = action size
-  int obs_size() const;        // 6 * num_joints (66)
+  int num_joints() const;  // = action size
+  int obs_size() const;    // 6 * num_joints (66)
   const std::vector<TaskObject>& objects() const;
   const SimState& sim_state() const;
 
-  // Starts a new episode everywhere. Episode numbers start at 0 and address the random streams.
+  // All randomness of an episode (grasp, physical parameters, goals) is drawn from streams
+  // addressed by the object's name and the episode's number: in whichever environment or batch it
+  // runs, it is the same episode.
+
+  // Starts a new episode everywhere: environment env gets number env, and the automatic reset after
+  // it num_envs more, so numbers never repeat.
   void ResetAll();
   // Starts episode `episode` with object `object` in env (evaluation assigns these itself).
   void Reset(int env, int object, std::uint64_t episode);
@@ -101,24 +123,30 @@ class ReorientBatch {
   void set_auto_reset(bool on);
 
   // Observation before the next action, row = environment: o_t and e_phys (paper, section III-B).
-  const std::vector<float>& obs() const;    // [N, obs_size]
-  const std::vector<float>& phys() const;   // [N, kPhysSize]
-  const std::vector<int>& object() const;   // [N]
+  // o_t: joint angles at t-2, t-1, t, each scaled so that its limits are -1 and 1, then the
+  // commands at t-3, t-2, t-1 (see TaskOptions::observe).
+  const std::vector<float>& obs() const;                   // [N, obs_size]
+  const std::vector<float>& phys() const;                  // [N, kPhysSize]
+  const std::vector<int>& object() const;                  // [N]
   const std::vector<std::array<double, 4>>& goal() const;  // [N] w x y z in W
   // Rotation distance to the goal, rad, and |dp|, m.
   const std::vector<double>& angle() const;
   const std::vector<double>& distance() const;
 
-  // Episodes that ended since the last call.
+  const EnvPhysics& physics(int env) const;    // of the running episode
+  const std::vector<double>& targets() const;  // [N, num_joints] servo targets, rad
+
+  // Episodes that ended since the last call, in order of step and environment.
   std::vector<EpisodeRecord> TakeRecords();
 
   // Curricula change these while running.
   TaskOptions& mutable_options();
 
-  // Pushes on the object: force in N, drawn by the caller; applied during the next step.
+  // Pushes on the object: force in N in W, drawn by the caller; applied during the next step.
   void Push(int env, const Eigen::Vector3d& force);
 
-  // Everything, bit for bit (checkpoints).
+  // Everything that changes while running, bit for bit (checkpoints), the options that curricula
+  // change included. Restore throws Error when the image is of another batch.
   std::vector<std::uint8_t> Save() const;
   void Restore(const std::vector<std::uint8_t>& bytes);
 

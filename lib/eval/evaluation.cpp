@@ -1,0 +1,113 @@
+#include "eval/evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/log.h"
+#include "base/random.h"
+
+namespace dexremoe {
+namespace {
+
+// A push every `every` control steps, in a direction that belongs to (object, episode, step).
+void PushObjects(ReorientBatch& batch, const std::vector<EpisodeJob>& jobs,
+                 const std::vector<int>& job_of_env, const std::vector<int>& age,
+                 const PushOptions& push, std::uint64_t seed) {
+  if (push.force <= 0) return;
+  for (int env = 0; env < batch.num_envs(); ++env) {
+    if (job_of_env[env] < 0 || age[env] == 0 || age[env] % push.every != 0) continue;
+    const EpisodeJob& job = jobs[job_of_env[env]];
+    Rng rng(seed, Stream::kDisturbance,
+            {static_cast<std::uint64_t>(job.object), job.episode,
+             static_cast<std::uint64_t>(age[env])});
+    Eigen::Vector3d direction(rng.Normal(), rng.Normal(), rng.Normal());
+    batch.Push(env, push.force * direction.normalized());
+  }
+}
+
+}  // namespace
+
+void EvalOptions::Register(Options& options) {
+  options.Add("eval.episodes", &episodes, "episodes per object").Range(1, 1e6);
+  options.Add("eval.envs", &envs, "environments run together; no effect on the result")
+      .Range(1, 65536);
+  options.Add("eval.tolerances", &tolerances, "success tolerances, rad; each has its own episodes")
+      .Range(1e-3, 3.15);
+  options.Add("eval.push", &push, "force of the pushes on the object, N; 0 = none").Range(0, 1000);
+  options.Add("eval.push_every", &push_every, "control steps between pushes").Range(1, 1e6);
+  options.Add("eval.resamples", &resamples, "bootstrap resamples for the intervals")
+      .Range(0, 1e6);
+}
+
+std::vector<EpisodeJob> MakeJobs(int objects, int episodes) {
+  std::vector<EpisodeJob> jobs;
+  for (int object = 0; object < objects; ++object)
+    for (int e = 0; e < episodes; ++e) jobs.push_back({object, static_cast<std::uint64_t>(e)});
+  return jobs;
+}
+
+std::vector<EpisodeRecord> RunJobs(ReorientBatch& batch, const ActFunction& act,
+                                   const std::vector<EpisodeJob>& jobs, const PushOptions& push,
+                                   std::uint64_t seed, const StepObserver& observer,
+                                   const std::function<void(int)>& progress) {
+  const int envs = batch.num_envs();
+  const int count = static_cast<int>(jobs.size());
+  DEX_CHECK_LE(envs, count);
+  batch.set_auto_reset(false);
+  std::vector<int> job_of_env(envs, -1), age(envs, 0);
+  int next = 0, done = 0;
+  const auto start = [&](int env) {
+    job_of_env[env] = next < count ? next++ : -1;
+    age[env] = 0;
+    if (job_of_env[env] >= 0) {
+      const EpisodeJob& job = jobs[job_of_env[env]];
+      batch.Reset(env, job.object, job.episode);
+    }
+  };
+  for (int env = 0; env < envs; ++env) start(env);
+  batch.TakeRecords();
+  std::vector<EpisodeRecord> records(jobs.size());
+  std::vector<float> actions(static_cast<std::size_t>(envs) * batch.num_joints());
+  while (done < count) {
+    act(batch, actions);
+    PushObjects(batch, jobs, job_of_env, age, push, seed);
+    if (observer.before) observer.before(batch, actions);
+    const StepResult& result = batch.Step(actions);
+    if (observer.after) observer.after(result);
+    for (int& a : age) ++a;
+    for (EpisodeRecord& record : batch.TakeRecords()) {
+      const int job = job_of_env[record.env];
+      DEX_CHECK_GE(job, 0);
+      record.object = jobs[job].object;
+      record.episode = jobs[job].episode;
+      records[job] = record;
+      ++done;
+      start(record.env);
+    }
+    if (progress) progress(done);
+  }
+  return records;
+}
+
+std::vector<EvalRun> Evaluate(const EvalSetup& setup, const EvalOptions& options,
+                              const ActFunction& act, ThreadPool& pool) {
+  const auto jobs = MakeJobs(static_cast<int>(setup.objects.size()), options.episodes);
+  const int envs = std::min(options.envs, static_cast<int>(jobs.size()));
+  std::vector<EvalRun> runs;
+  for (const double tolerance : options.tolerances) {
+    TaskOptions task = setup.task;
+    task.tolerance = tolerance;
+    ReorientBatch batch(task, setup.sim, setup.hand, setup.objects, envs, setup.seed, pool);
+    Progress progress(fmt::format("episodes at {} rad", tolerance),
+                      static_cast<double>(jobs.size()));
+    EvalRun& run = runs.emplace_back();
+    run.tolerance = tolerance;
+    run.episodes = RunJobs(batch, act, jobs, {options.push, options.push_every}, setup.seed, {},
+                           [&](int done) { progress.Update(done); });
+    run.metrics = ComputeMetrics(run.episodes, {options.resamples, setup.seed});
+  }
+  return runs;
+}
+
+}  // namespace dexremoe

@@ -1,0 +1,37 @@
+// The project's figures: learning curves, successes per object, the map of the gate's weights.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/embedding.h"
+#include "eval/eval_file.h"
+#include "eval/figure.h"
+#include "io/csv.h"
+
+namespace dexremoe {
+
+struct Curve {
+  std::string label;
+  CsvTable table;
+};
+// One panel per column, one colour per run: the raw values faint, a centred running mean over
+// `smooth` of the rows (0 .. 1) on top. `x` is the column on the abscissa. Without `columns`, those
+// of the training curves that the files have. Throws Error when nothing is left to draw.
+Figure CurvesFigure(const std::vector<Curve>& curves, const std::string& x,
+                    const std::vector<std::string>& columns, double smooth);
+
+struct BarMethod {
+  std::string label;
+  EvalFile eval;
+};
+// S_i with 95 % intervals, grouped by object; objects in ascending order under the last method
+// (paper, figure 6). Bars up to 40 objects, points beyond. Throws Error when a method lacks the
+// tolerance or the objects differ.
+Figure BarsFigure(const std::vector<BarMethod>& methods, double tolerance);
+
+// Rows as dots, objects as ringed markers with their number (or name, up to 30 objects); colours by
+// "cluster", "category" or "expert" (the one with the largest mean weight).
+Figure EmbeddingFigure(const Embedding& embedding, const std::string& color);
+
+}  // namespace dexremoe

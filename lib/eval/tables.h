@@ -1,0 +1,58 @@
+// Tables of results: ours with intervals beside the paper's, as Markdown, CSV and LaTeX.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/eval_file.h"
+
+namespace dexremoe {
+
+// One row label and the evaluations behind it: several files with the same label are seeds of the
+// same method, and their episodes are pooled per object.
+struct MethodResults {
+  std::string label;
+  std::vector<EvalFile> evals;
+};
+
+// One number the paper prints (data/paper_tables.csv: table,method,split,metric,value).
+struct PaperNumber {
+  std::string table, method, split, metric;
+  double value = 0;
+};
+// Throws Error naming file and line when a split or metric is unknown.
+std::vector<PaperNumber> ReadPaperNumbers(const std::string& path);
+
+struct TableRow {
+  std::string label;
+  bool paper = false;                 // printed numbers, without intervals
+  std::vector<Estimate> values;       // one per column; NaN where nothing is known
+};
+
+// A table of one split at one tolerance.
+struct ResultTable {
+  std::string split;                  // "train" or "ood"
+  double tolerance = 0;               // rad
+  std::vector<Metric> columns;
+  std::vector<TableRow> rows;
+  std::string caption;                // objects, episodes, seeds, engine
+};
+
+// One table for each split and tolerance that the evaluations hold; the paper's rows (of its
+// `table`) stand below ours at tolerance 0.4 rad. Throws Error when the methods were evaluated on
+// different objects or with different engines.
+std::vector<ResultTable> MakeTables(const std::vector<MethodResults>& methods,
+                                    const std::vector<PaperNumber>& paper,
+                                    const std::string& paper_table,
+                                    const BootstrapOptions& bootstrap);
+
+std::string MarkdownOf(const std::vector<ResultTable>& tables);
+std::string LatexOf(const std::vector<ResultTable>& tables);
+// One line per number: split,tolerance,source,method,metric,value,low,high.
+std::string CsvOf(const std::vector<ResultTable>& tables);
+// One line per object and method: object,category,split,tolerance,method,episodes and every object
+// metric with its interval.
+std::string ObjectCsvOf(const std::vector<MethodResults>& methods,
+                        const BootstrapOptions& bootstrap);
+
+}  // namespace dexremoe

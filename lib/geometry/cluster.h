@@ -1,0 +1,36 @@
+// Clusters of voxels and their hulls: the pieces that convex decomposition cuts and joins.
+#pragma once
+
+#include <vector>
+
+#include "geometry/mesh.h"
+#include "geometry/voxel_solid.h"
+
+namespace dexremoe {
+
+struct Cluster {
+  std::vector<int> voxels;  // indices into VoxelSolid::voxels, rising
+  double solid = 0;         // volume of the solid within, m^3
+  TriMesh hull;             // of the solid within
+  double hull_volume = 0;   // m^3
+  // What a single convex part would add to the solid.
+  double Excess() const { return hull_volume - solid; }
+};
+
+// Hull that always exists: points in a plane, on a line or at one place are given a thickness.
+TriMesh SolidHull(const std::vector<Eigen::Vector3d>& points, double thickness);
+
+Cluster MakeCluster(const VoxelSolid& solid, std::vector<int> voxels);
+
+// Cuts at the best plane between voxel layers along x, y or z, then separates what is no longer
+// connected. One cluster comes back when there is nothing to cut.
+// Score of a plane (V-HACD): summed excess of both hulls + balance * |difference of volumes|.
+// NOTE(paper): V-HACD's third term, which favours cuts across an axis of revolution, is left out.
+std::vector<Cluster> CutBest(const VoxelSolid& solid, const Cluster& cluster, double balance);
+
+// Joins the pair whose common hull adds least, until at most `most` are left and no joint is
+// nearly free (adds less than `free_volume`).
+void MergeClusters(std::size_t most, double free_volume, double thickness,
+                   std::vector<Cluster>& clusters);
+
+}  // namespace dexremoe

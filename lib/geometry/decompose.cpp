@@ -1,0 +1,91 @@
+#include "geometry/decompose.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "geometry/cluster.h"
+#include "geometry/hull.h"
+#include "geometry/repair.h"
+
+namespace dexremoe {
+namespace {
+
+// Cutting goes on to more clusters than asked for, so that merging has a choice.
+constexpr std::size_t kClustersPerPart = 3;
+constexpr std::size_t kFewestClusters = 16;
+constexpr std::size_t kMostClusters = 96;
+// Clusters whose share of the allowed excess is below this are not worth a cut; joints that add no
+// more are taken back.
+constexpr double kNegligible = 0.05;
+
+TriMesh Closed(const TriMesh& mesh, const std::string& label) {
+  const Topology topology = TopologyOf(mesh);
+  const bool usable = topology.open_edges == 0 && topology.flipped_edges == 0 &&
+                      MassPropertiesOf(mesh).volume > 0;
+  return usable ? mesh : MakeClosedShell(mesh, {}, label).mesh;
+}
+
+// Always cuts the cluster with the largest excess.
+std::vector<Cluster> CutApart(const VoxelSolid& solid, const DecomposeOptions& options) {
+  std::vector<int> all(solid.voxels.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  std::vector<Cluster> clusters = {MakeCluster(solid, std::move(all))};
+  const std::size_t most =
+      options.parts == 1
+          ? 1
+          : std::clamp(kClustersPerPart * options.parts, kFewestClusters, kMostClusters);
+  const double allowed = options.volume_error * solid.volume;
+  std::vector<Cluster> settled;  // cannot be cut further
+  while (!clusters.empty() && clusters.size() + settled.size() < most) {
+    double excess = 0;
+    for (const auto* list : {&clusters, &settled})
+      for (const Cluster& cluster : *list) excess += cluster.Excess();
+    if (excess <= allowed) break;
+    const auto worst = std::max_element(
+        clusters.begin(), clusters.end(),
+        [](const Cluster& a, const Cluster& b) { return a.Excess() < b.Excess(); });
+    if (worst->Excess() <= kNegligible * allowed) break;
+    std::vector<Cluster> pieces = CutBest(solid, *worst, options.balance);
+    clusters.erase(worst);
+    std::vector<Cluster>& target = pieces.size() == 1 ? settled : clusters;
+    for (Cluster& piece : pieces) target.push_back(std::move(piece));
+  }
+  for (Cluster& cluster : settled) clusters.push_back(std::move(cluster));
+  return clusters;
+}
+
+}  // namespace
+
+void DecomposeOptions::Register(Options& options) {
+  options.Add("decompose.parts", &parts, "convex parts, at most").Range(1, 256);
+  options.Add("decompose.resolution", &resolution, "voxels in the bounding box")
+      .Range(1000, 4000000);
+  options
+      .Add("decompose.volume_error", &volume_error,
+           "cutting stops when the parts exceed the solid by this share of its volume")
+      .Range(0, 1);
+  options.Add("decompose.hull_vertices", &hull_vertices, "vertices of a part, at most")
+      .Range(4, 1024);
+  options
+      .Add("decompose.balance", &balance, "weight of unequal halves against concavity in a cut")
+      .Range(0, 10);
+}
+
+ConvexParts DecomposeConvex(const TriMesh& mesh, const DecomposeOptions& options,
+                            const std::string& label) {
+  if (mesh.triangles.empty()) Fail("{}: expected a mesh with faces, found none", label);
+  const VoxelSolid solid = Voxelise(Closed(mesh, label), options.resolution);
+  if (!(solid.volume > 0)) Fail("{}: expected a mesh that encloses a volume, found none", label);
+  std::vector<Cluster> clusters = CutApart(solid, options);
+  const double thickness = solid.spacing / 10;
+  MergeClusters(static_cast<std::size_t>(options.parts),
+                kNegligible * options.volume_error * solid.volume, thickness, clusters);
+  ConvexParts parts;
+  for (const Cluster& cluster : clusters) {
+    auto limited = ConvexHull(cluster.hull.vertices, {options.hull_vertices, 0});
+    parts.push_back(limited ? std::move(*limited) : cluster.hull);
+  }
+  return parts;
+}
+
+}  // namespace dexremoe

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.h"
+#include "geometry/distance_field.h"
+#include "geometry/recipes.h"
+#include "geometry/remesh.h"
+#include "geometry/repair.h"
+#include "io/atomic_file.h"
+
+namespace dexremoe {
+namespace {
+
+constexpr double kReach = 8;  // recipes live within +-kReach units
+// Blends, tapers and lofts overstate distances; blocks are skipped only with this much to spare.
+constexpr double kSlack = 2;
+
+// Bounding box of the inside, from cubes that are split while the surface may pass through them.
+void ExtendBounds(const Field& field, const Eigen::Vector3d& center, double half, double smallest,
+                  Box3& bounds) {
+  const double value = field(center);
+  if (value > kSlack * std::sqrt(3.0) * half) return;
+  if (half <= smallest) {
+    if (value > std::sqrt(3.0) * half) return;
+    bounds.Extend(center - Eigen::Vector3d::Constant(half));
+    bounds.Extend(center + Eigen::Vector3d::Constant(half));
+    return;
+  }
+  const Box3 cube = {center - Eigen::Vector3d::Constant(half),
+                     center + Eigen::Vector3d::Constant(half)};
+  if ((cube.min.array() >= bounds.min.array()).all() &&
+      (cube.max.array() <= bounds.max.array()).all())
+    return;  // nothing to gain
+  for (int child = 0; child < 8; ++child) {
+    const Eigen::Vector3d side(child & 1 ? 1 : -1, child & 2 ? 1 : -1, child & 4 ? 1 : -1);
+    ExtendBounds(field, center + side * half / 2, half / 2, smallest, bounds);
+  }
+}
+
+void FillField(const Field& field, DistanceGrid& grid) {
+  constexpr int kBlock = 6;
+  const double enough = kSlack * std::sqrt(3.0) * (kBlock / 2.0 + 1) * grid.spacing;
+  for (int z = 0; z < grid.dims[2]; z += kBlock)
+    for (int y = 0; y < grid.dims[1]; y += kBlock)
+      for (int x = 0; x < grid.dims[0]; x += kBlock) {
+        const double middle = field(grid.Position(x, y, z) + Eigen::Vector3d::Constant(
+                                                                 (kBlock - 1) / 2.0 * grid.spacing));
+        const std::array<int, 3> end = {std::min(x + kBlock, grid.dims[0]),
+                                        std::min(y + kBlock, grid.dims[1]),
+                                        std::min(z + kBlock, grid.dims[2])};
+        for (int k = z; k < end[2]; ++k)
+          for (int j = y; j < end[1]; ++j)
+            for (int i = x; i < end[0]; ++i)
+              grid.values[grid.Index(i, j, k)] =
+                  std::abs(middle) > enough ? middle : field(grid.Position(i, j, k));
+      }
+}
+
+// Tells the author where the stray piece (or the bubble inside) is.
+void CheckOneShell(const TriMesh& mesh, const std::string& label) {
+  const std::vector<int> shell = ShellOfTriangles(mesh);
+  if (shell.empty()) Fail("{}: expected one closed shell, found none", label);
+  const int count = *std::max_element(shell.begin(), shell.end()) + 1;
+  if (count == 1) return;
+  std::vector<std::vector<int>> members(count);
+  for (std::size_t t = 0; t < shell.size(); ++t) members[shell[t]].push_back(static_cast<int>(t));
+  const auto smallest = std::min_element(members.begin(), members.end(),
+      [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  const TriMesh stray = Submesh(mesh, *smallest);
+  const Eigen::Vector3d at = BoundsOf(stray).Center();
+  Fail("{}: expected one closed shell, found {}; the smallest is a {} at ({:.2f}, {:.2f}, {:.2f})",
+       label, count, MassPropertiesOf(stray).volume > 0 ? "piece" : "bubble", at.x(), at.y(), at.z());
+}
+
+}  // namespace
+
+TriMesh MeshOfRecipe(const Recipe& recipe, double length, const std::string& label) {
+  Box3 bounds;
+  ExtendBounds(recipe.field, Eigen::Vector3d::Zero(), kReach, kReach / 256, bounds);
+  if (!(bounds.Size().maxCoeff() > 0))
+    Fail("{}: expected a shape within {} units of the origin, found nothing", label, kReach);
+  DistanceGrid grid = GridAround(bounds, recipe.resolution, 2);
+  FillField(recipe.field, grid);
+  TriMesh mesh = ExtractLevelSet(grid, 0);
+  CheckOneShell(mesh, label);
+  for (int round = 0; round < 2; ++round) {
+    SmoothTangentially(2, mesh);
+    ProjectToField(recipe.field, grid.spacing / 4, grid.spacing / 2, mesh);
+  }
+  const Box3 box = BoundsOf(mesh);
+  const double factor = length / box.Size().maxCoeff();
+  for (Eigen::Vector3d& v : mesh.vertices) v = factor * (v - box.Center());
+  return mesh;
+}
+
+std::vector<RecipeFile> FindRecipes(const std::string& folder) {
+  namespace fs = std::filesystem;
+  if (!fs::is_directory(folder)) Fail("{}: expected a folder of recipes, found none", folder);
+  std::vector<RecipeFile> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file() && entry.path().extension() == ".recipe")
+      files.push_back({entry.path().string(), entry.path().parent_path().filename().string(),
+                       entry.path().stem().string()});
+  if (files.empty()) Fail("{}: expected CATEGORY/NAME.recipe files, found none", folder);
+  std::sort(files.begin(), files.end(),
+            [](const RecipeFile& a, const RecipeFile& b) { return a.path < b.path; });
+  return files;
+}
+
+Recipe LoadRecipe(const RecipeFile& file, std::uint64_t seed) {
+  std::uint64_t name = 0xCBF29CE484222325u;  // FNV-1a
+  for (const char c : file.category + "/" + file.name)
+    name = (name ^ static_cast<unsigned char>(c)) * 0x100000001B3u;
+  return ParseRecipe(file.path, ReadFile(file.path), SeedOf(seed, Stream::kRecipe, {name}));
+}
+
+}  // namespace dexremoe

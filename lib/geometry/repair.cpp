@@ -1,0 +1,127 @@
+#include "geometry/repair.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "base/error.h"
+#include "geometry/distance_field.h"
+#include "geometry/remesh.h"
+
+namespace dexremoe {
+namespace {
+
+constexpr int kSamples = 4000;       // points that test whether the surface survived
+constexpr double kOffsetCells = 0.8; // thickening of sheets that would vanish
+
+// Sheets modelled from both sides cancel in the winding number. When most of the mesh is such,
+// one side of each is dropped; where a few triangles meet back to back (two solids that touch),
+// their cancelling is just right.
+TriMesh WithoutDoubleSides(const TriMesh& mesh) {
+  std::map<std::array<int, 3>, int> uses;
+  const auto key = [](std::array<int, 3> t) {
+    std::sort(t.begin(), t.end());
+    return t;
+  };
+  std::size_t doubled = 0;
+  for (const auto& t : mesh.triangles) doubled += ++uses[key(t)] == 2;
+  if (4 * doubled < mesh.triangles.size()) return mesh;
+  TriMesh result;
+  result.vertices = mesh.vertices;
+  std::set<std::array<int, 3>> seen;
+  for (const auto& t : mesh.triangles)
+    if (seen.insert(key(t)).second) result.triangles.push_back(t);
+  return result;
+}
+
+// The shell of largest volume; `dropped` gets the number and the volume share of the others.
+struct Dropped {
+  int shells = 0;
+  double volume_share = 0;
+};
+TriMesh LargestShell(const TriMesh& mesh, Dropped& dropped) {
+  const std::vector<int> shell = ShellOfTriangles(mesh);
+  const int count = shell.empty() ? 0 : *std::max_element(shell.begin(), shell.end()) + 1;
+  std::vector<std::vector<int>> members(count);
+  for (std::size_t t = 0; t < shell.size(); ++t) members[shell[t]].push_back(static_cast<int>(t));
+  double total = 0, largest = -INFINITY;
+  TriMesh best;
+  for (const std::vector<int>& triangles : members) {
+    TriMesh piece = Submesh(mesh, triangles);
+    const double volume = MassPropertiesOf(piece).volume;
+    total += std::max(volume, 0.0);
+    if (volume <= largest) continue;
+    largest = volume;
+    best = std::move(piece);
+  }
+  dropped.shells = std::max(count - 1, 0);
+  dropped.volume_share = total > 0 ? 1 - largest / total : 0;
+  return best;
+}
+
+// Fraction of the source surface that lies more than a cell outside the new shell.
+double LostSurface(const std::vector<Eigen::Vector3d>& samples, const TriMesh& shell, double cell) {
+  if (shell.triangles.empty()) return 1;
+  const TriangleBvh bvh(shell);
+  int lost = 0;
+  for (const Eigen::Vector3d& p : samples)
+    lost += bvh.Closest(p).distance > cell && bvh.WindingNumber(p) < 0.5;
+  return static_cast<double>(lost) / static_cast<double>(samples.size());
+}
+
+RepairResult Remesh(const TriMesh& mesh, const Topology& was, const RepairOptions& options,
+                    const std::string& label) {
+  const TriMesh source = WithConsistentWinding(WithoutDoubleSides(mesh));
+  const TriangleBvh bvh(source);
+  DistanceGrid grid = GridAround(BoundsOf(source), options.resolution, 3);
+  FillSignedDistance(bvh, grid);
+  const std::vector<Eigen::Vector3d> samples = SpreadOverSurface(source, kSamples);
+
+  RepairResult result;
+  Dropped dropped;
+  double offset = 0;
+  result.mesh = LargestShell(ExtractLevelSet(grid, 0), dropped);
+  const double lost = LostSurface(samples, result.mesh, grid.spacing);
+  if (lost > options.lost_surface) {
+    offset = kOffsetCells * grid.spacing;
+    result.mesh = LargestShell(ExtractLevelSet(grid, offset), dropped);
+  }
+  SmoothTangentially(2, result.mesh);
+  if (!(MassPropertiesOf(result.mesh).volume > 0))
+    Fail("{}: expected a mesh that encloses a volume, found none after remeshing", label);
+
+  result.text = fmt::format("remeshed: {} shells, {} open edges, {} crowded edges", was.shells,
+                            was.open_edges, was.crowded_edges);
+  if (offset > 0)
+    result.text += fmt::format("; thickened by {:.2g} % of its length (sheets would have vanished)",
+                               100 * offset / BoundsOf(source).Size().maxCoeff());
+  if (dropped.shells > 0)
+    result.text += fmt::format("; dropped {} separate pieces, {:.2g} % of the volume",
+                               dropped.shells, 100 * dropped.volume_share);
+  return result;
+}
+
+}  // namespace
+
+RepairResult MakeClosedShell(const TriMesh& mesh, const RepairOptions& options,
+                             const std::string& label) {
+  const double size = BoundsOf(mesh).Size().maxCoeff();
+  if (!(size > 0)) Fail("{}: expected a mesh with an extent, found all vertices at one place", label);
+  // 32-bit coordinates of equal points differ by rounding at most.
+  const TriMesh welded = Weld(mesh, 1e-6 * size);
+  const Topology topology = TopologyOf(welded);
+  if (topology.ClosedManifold() && topology.shells == 1) {
+    const double volume = MassPropertiesOf(welded).volume;
+    if (volume > 0) return {welded, "closed as it was"};
+    if (volume < 0) return {WithConsistentWinding(welded), "closed; turned inside out"};
+  }
+  if (topology.open_edges == 0 && topology.crowded_edges == 0 && topology.pinched_vertices == 0 &&
+      topology.shells == 1) {
+    const TriMesh turned = WithConsistentWinding(welded);
+    if (TopologyOf(turned).ClosedManifold() && MassPropertiesOf(turned).volume > 0)
+      return {turned, fmt::format("closed; winding mended at {} edges", topology.flipped_edges)};
+  }
+  return Remesh(welded, topology, options, label);
+}
+
+}  // namespace dexremoe

@@ -1,0 +1,65 @@
+#include <dlfcn.h>
+#include <dnnl.h>
+
+#include <Eigen/Core>
+
+#include "base/check.h"
+#include "nn/layers.h"
+
+namespace dexremoe {
+namespace {
+
+// Debian's oneDNN splits every product over an OpenMP team. Our callers already run on every core
+// through ThreadPool, so each calling thread tells OpenMP once to keep to itself: the team size is
+// a setting of the calling thread, not of the process. The function is looked up at run time
+// because the build does not link libgomp itself; oneDNN brings it in.
+void KeepToOneThread() {
+  thread_local const bool done = [] {
+    using SetNumThreads = void (*)(int);
+    const auto set = reinterpret_cast<SetNumThreads>(dlsym(RTLD_DEFAULT, "omp_set_num_threads"));
+    if (set != nullptr) set(1);
+    return true;
+  }();
+  (void)done;
+}
+
+}  // namespace
+
+template <>
+void Gemm<float>(bool transpose_a, bool transpose_b, std::int64_t m, std::int64_t n, std::int64_t k,
+                 float alpha, const float* a, std::int64_t lda, const float* b, std::int64_t ldb,
+                 float beta, float* c, std::int64_t ldc) {
+  KeepToOneThread();
+  const dnnl_status_t status = dnnl_sgemm(transpose_a ? 'T' : 'N', transpose_b ? 'T' : 'N', m, n, k,
+                                          alpha, a, lda, b, ldb, beta, c, ldc);
+  DEX_CHECK_EQ(static_cast<int>(status), static_cast<int>(dnnl_success));
+}
+
+// Only gradient checks run in double, so clarity comes before speed.
+template <>
+void Gemm<double>(bool transpose_a, bool transpose_b, std::int64_t m, std::int64_t n,
+                  std::int64_t k, double alpha, const double* a, std::int64_t lda, const double* b,
+                  std::int64_t ldb, double beta, double* c, std::int64_t ldc) {
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using Stride = Eigen::OuterStride<>;
+  using Input = Eigen::Map<const Matrix, Eigen::Unaligned, Stride>;
+  const Input left(a, transpose_a ? k : m, transpose_a ? m : k, Stride(lda));
+  const Input right(b, transpose_b ? n : k, transpose_b ? k : n, Stride(ldb));
+  Eigen::Map<Matrix, Eigen::Unaligned, Stride> result(c, m, n, Stride(ldc));
+  Matrix product(m, n);
+  if (transpose_a && transpose_b)
+    product = left.transpose() * right.transpose();
+  else if (transpose_a)
+    product = left.transpose() * right;
+  else if (transpose_b)
+    product = left * right.transpose();
+  else
+    product = left * right;
+  // As in BLAS, beta = 0 ignores what c held (it may be uninitialised).
+  if (beta == 0)
+    result = alpha * product;
+  else
+    result = alpha * product + beta * result;
+}
+
+}  // namespace dexremoe

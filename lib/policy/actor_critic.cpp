@@ -1,0 +1,76 @@
+#include "policy/actor_critic.h"
+
+#include <algorithm>
+
+namespace dexremoe {
+
+template <typename T>
+ActorCritic<T>::ActorCritic(const PolicyStructure& structure)
+    : Policy<T>(structure),
+      encoder_(this->layout_, structure),
+      actor_(this->layout_, "actor", structure) {
+  this->log_std_block_ = this->layout_.Add("log_std", structure.num_actions, 1);
+  this->SetTrainable("", true);
+  this->SetTrainable("encoder/", structure.train_encoders);
+}
+
+template <typename T>
+void ActorCritic<T>::Initialize(std::uint64_t seed, double log_std, double mean_scale,
+                                float* params) const {
+  Rng rng(seed, Stream::kInit);
+  encoder_.Initialize(rng, params);
+  actor_.Initialize(rng, mean_scale, params);
+  const ParamBlock& block = this->layout_.block(this->log_std_block_);
+  std::fill_n(params + block.offset, block.size(), static_cast<float>(log_std));
+}
+
+template <typename T>
+int ActorCritic<T>::frozen_size() const {
+  return this->structure_.train_encoders ? 0 : this->structure_.z_size;
+}
+
+template <typename T>
+void ActorCritic<T>::Freeze(const T* params, const ShapeInputs<T>& shapes,
+                            const PolicyRows<T>& rows, Workspace<T>& work, T* frozen) const {
+  if (frozen_size() == 0) return;
+  work.Reset();
+  EncoderPass<T> pass = encoder_.Carve(shapes.objects, rows.n, work);
+  encoder_.ShapeForward(params, shapes, pass);
+  std::copy_n(encoder_.Forward(params, rows, pass), rows.n * frozen_size(), frozen);
+}
+
+template <typename T>
+void ActorCritic<T>::Forward(const T* params, const ShapeInputs<T>& shapes,
+                             const PolicyRows<T>& rows, Workspace<T>& work, T* mean,
+                             T* value) const {
+  work.Reset();
+  ActorPass<T> actor = actor_.Carve(rows.n, work);
+  const T* z = rows.frozen;
+  if (z == nullptr) {
+    EncoderPass<T> encoder = encoder_.Carve(shapes.objects, rows.n, work);
+    encoder_.ShapeForward(params, shapes, encoder);
+    z = encoder_.Forward(params, rows, encoder);
+  }
+  actor_.Forward(params, rows, z, actor, mean, value);
+}
+
+template <typename T>
+void ActorCritic<T>::Backward(const T* params, const ShapeInputs<T>& shapes,
+                              const PolicyRows<T>& rows, Workspace<T>& work, const T* dmean,
+                              const T* dvalue, T* grads) const {
+  work.Reset();
+  ActorPass<T> actor = actor_.Carve(rows.n, work);
+  if (!this->structure_.train_encoders) {
+    actor_.Backward(params, rows, actor, dmean, dvalue, static_cast<T*>(nullptr), grads);
+    return;
+  }
+  EncoderPass<T> encoder = encoder_.Carve(shapes.objects, rows.n, work);
+  T* dz = work.Take(rows.n * this->structure_.z_size);
+  actor_.Backward(params, rows, actor, dmean, dvalue, dz, grads);
+  encoder_.Backward(params, shapes, rows, encoder, dz, grads);
+}
+
+template class ActorCritic<float>;
+template class ActorCritic<double>;
+
+}  // namespace dexremoe

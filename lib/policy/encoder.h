@@ -1,0 +1,48 @@
+// mu_pc and mu_e (paper, III-B): object descriptor and privileged state to the vector z.
+#pragma once
+
+#include "nn/mlp.h"
+#include "policy/policy.h"
+
+namespace dexremoe {
+
+// Activations of one pass, inside a Workspace.
+template <typename T>
+struct EncoderPass {
+  T* cloud;       // activations of mu_pc over the K objects
+  T* shape;       // e_shape [K, shape_size]
+  T* input;       // e = [e_phys, e_shape] [n, phys_size + shape_size]
+  T* extrinsics;  // activations of mu_e over the n rows
+  // Backward only.
+  T* dinput;  // as input
+  T* df;      // [K, f_size]
+  T* cloud_scratch;
+  T* extrinsics_scratch;
+};
+
+// Blocks "encoder/cloud/*" and "encoder/extrinsics/*".
+class Encoder {
+ public:
+  Encoder(ParamLayout& layout, const PolicyStructure& structure);
+
+  void Initialize(Rng& rng, float* params) const;
+
+  template <typename T>
+  EncoderPass<T> Carve(std::int64_t objects, std::int64_t n, Workspace<T>& work) const;
+  // Fills pass.shape: f = mu_pc(p) beside the one-hot category.
+  template <typename T>
+  void ShapeForward(const T* params, const ShapeInputs<T>& shapes, EncoderPass<T>& pass) const;
+  // Needs ShapeForward; returns z [n, z_size].
+  template <typename T>
+  const T* Forward(const T* params, const PolicyRows<T>& rows, EncoderPass<T>& pass) const;
+  // dz [n, z_size] is overwritten.
+  template <typename T>
+  void Backward(const T* params, const ShapeInputs<T>& shapes, const PolicyRows<T>& rows,
+                EncoderPass<T>& pass, T* dz, T* grads) const;
+
+ private:
+  int phys_size_, f_size_, num_categories_;
+  Mlp cloud_, extrinsics_;
+};
+
+}  // namespace dexremoe

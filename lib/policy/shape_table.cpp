@@ -1,0 +1,32 @@
+#include "policy/shape_table.h"
+
+#include "base/check.h"
+#include "base/error.h"
+
+namespace dexremoe {
+
+ShapeTable MakeShapeTable(const std::vector<TaskObject>& objects) {
+  ShapeTable table;
+  for (const TaskObject& object : objects) {
+    if (object.feature.size() != kShapeFeatureSize)
+      Fail("object {}: descriptor: expected {} values, found {}", object.name, kShapeFeatureSize,
+           object.feature.size());
+    table.names.push_back(object.name);
+    table.feature.insert(table.feature.end(), object.feature.begin(), object.feature.end());
+    table.category.push_back(object.category);
+  }
+  return table;
+}
+
+ShapeRows::ShapeRows(const ShapeTable& table, const RunningMoments& moments, double clip,
+                     int num_categories)
+    : objects_(table.objects()), feature_(table.feature), category_(objects_ * num_categories) {
+  DEX_CHECK_EQ(feature_.size(), objects_ * moments.mean.size());
+  Normalize(moments, clip, objects_, table.feature.data(), feature_.data());
+  for (std::int64_t k = 0; k < objects_; ++k) {
+    DEX_CHECK_LT(table.category[k], num_categories);
+    category_[k * num_categories + table.category[k]] = 1;
+  }
+}
+
+}  // namespace dexremoe

@@ -1,0 +1,218 @@
+#include "policy/soft_mixture.h"
+
+#include <algorithm>
+
+#include "nn/layers.h"
+
+namespace dexremoe {
+namespace {
+
+// Columns of e_shape = [f, one-hot] that the gate sees.
+struct Span {
+  int begin, size;
+};
+Span GateInput(const PolicyStructure& s) {
+  if (s.gate_input == "cloud") return {0, s.f_size()};
+  if (s.gate_input == "category") return {s.f_size(), s.num_categories};
+  return {0, s.shape_size()};
+}
+
+std::vector<int> GateWidths(const PolicyStructure& s) {
+  std::vector<int> widths = {GateInput(s).size};
+  widths.insert(widths.end(), s.gate_widths.begin(), s.gate_widths.end());
+  widths.push_back(s.experts);
+  return widths;
+}
+
+std::vector<Actor> MakeExperts(ParamLayout& layout, const PolicyStructure& s) {
+  std::vector<Actor> experts;
+  for (int i = 0; i < s.experts; ++i) experts.emplace_back(layout, "expert" + std::to_string(i), s);
+  return experts;
+}
+
+}  // namespace
+
+template <typename T>
+SoftMixture<T>::SoftMixture(const PolicyStructure& s)
+    : Policy<T>(s),
+      encoder_(this->layout_, s),
+      experts_(MakeExperts(this->layout_, s)),
+      gate_(this->layout_, "gate", GateWidths(s), false),
+      value_(this->layout_, "value", {s.experts + s.shape_size(), 1}, false) {
+  this->log_std_block_ = this->layout_.Add("log_std", s.num_actions, 1);
+  this->SetTrainable("", false);
+  this->SetTrainable("gate/", !s.gate_uniform);
+  this->SetTrainable("value/", true);
+}
+
+template <typename T>
+void SoftMixture<T>::Initialize(std::uint64_t seed, double log_std, double mean_scale,
+                                float* params) const {
+  Rng rng(seed, Stream::kInit);
+  encoder_.Initialize(rng, params);
+  for (const Actor& expert : experts_) expert.Initialize(rng, mean_scale, params);
+  // NOTE(paper): initialisation is silent. A last layer of a hundredth starts the gate near the
+  // uniform average, so that no expert is ruled out before it was tried.
+  gate_.Initialize(rng, 0.01, params);
+  const ParamBlock& weight = this->layout_.block(value_.weight(0));
+  std::fill_n(params + weight.offset, weight.size(), 0.0f);
+  std::fill_n(params + weight.offset, gates(), 1.0f / static_cast<float>(gates()));
+  const ParamBlock& bias = this->layout_.block(value_.bias(0));
+  params[bias.offset] = 0;
+  const ParamBlock& spread = this->layout_.block(this->log_std_block_);
+  std::fill_n(params + spread.offset, spread.size(), static_cast<float>(log_std));
+}
+
+template <typename T>
+int SoftMixture<T>::frozen_size() const {
+  return gates() * (this->structure_.num_actions + 1);
+}
+
+template <typename T>
+void SoftMixture<T>::Freeze(const T* params, const ShapeInputs<T>& shapes,
+                            const PolicyRows<T>& rows, Workspace<T>& work, T* frozen) const {
+  const int actions = this->structure_.num_actions;
+  work.Reset();
+  EncoderPass<T> encoder = encoder_.Carve(shapes.objects, rows.n, work);
+  ActorPass<T> actor = experts_.front().Carve(rows.n, work);
+  T* mean = work.Take(rows.n * actions);
+  T* value = work.Take(rows.n);
+  encoder_.ShapeForward(params, shapes, encoder);
+  const T* z = encoder_.Forward(params, rows, encoder);
+  for (int i = 0; i < gates(); ++i) {
+    experts_[i].Forward(params, rows, z, actor, mean, value);
+    for (std::int64_t r = 0; r < rows.n; ++r) {
+      T* row = frozen + r * frozen_size();
+      std::copy_n(mean + r * actions, actions, row + i * actions);
+      row[gates() * actions + i] = value[r];
+    }
+  }
+}
+
+template <typename T>
+GatePass<T> SoftMixture<T>::CarveGate(std::int64_t objects, Workspace<T>& work) const {
+  GatePass<T> pass;
+  pass.input = work.Take(objects * gate_.inputs());
+  pass.gate = work.Take(gate_.ActivationSize(objects));
+  pass.weights = work.Take(objects * gates());
+  pass.dweights = work.Take(objects * gates());
+  pass.scratch = work.Take(gate_.ScratchSize(objects));
+  return pass;
+}
+
+template <typename T>
+typename SoftMixture<T>::Pass SoftMixture<T>::Carve(std::int64_t objects, std::int64_t n,
+                                                    Workspace<T>& work) const {
+  Pass pass;
+  pass.encoder = encoder_.Carve(objects, 0, work);
+  pass.gate = CarveGate(objects, work);
+  pass.value_input = work.Take(n * value_.inputs());
+  pass.dvalue = work.Take(n);
+  pass.frozen = work.Take(n * frozen_size());
+  return pass;
+}
+
+template <typename T>
+void SoftMixture<T>::GateForward(const T* params, std::int64_t objects, const T* shape,
+                                 GatePass<T>& pass) const {
+  if (this->structure_.gate_uniform) {
+    std::fill_n(pass.weights, objects * gates(), T(1) / static_cast<T>(gates()));
+    return;
+  }
+  const Span span = GateInput(this->structure_);
+  const int shape_size = this->structure_.shape_size();
+  for (std::int64_t k = 0; k < objects; ++k)
+    std::copy_n(shape + k * shape_size + span.begin, span.size, pass.input + k * span.size);
+  const T* scores = gate_.Forward(params, objects, pass.input, pass.gate);
+  SoftmaxForward<T>(objects, gates(), scores, pass.weights);
+}
+
+template <typename T>
+void SoftMixture<T>::Mix(const PolicyRows<T>& rows, const T* frozen, const T* weights,
+                         T* mean) const {
+  const int actions = this->structure_.num_actions;
+  for (std::int64_t r = 0; r < rows.n; ++r) {
+    const T* w = weights + std::int64_t{rows.object[r]} * gates();
+    const T* expert = frozen + r * frozen_size();
+    T* to = mean + r * actions;
+    std::fill_n(to, actions, T(0));
+    for (int i = 0; i < gates(); ++i, expert += actions)
+      for (int a = 0; a < actions; ++a) to[a] += w[i] * expert[a];
+  }
+}
+
+template <typename T>
+void SoftMixture<T>::Forward(const T* params, const ShapeInputs<T>& shapes,
+                             const PolicyRows<T>& rows, Workspace<T>& work, T* mean,
+                             T* value) const {
+  std::vector<T> own;
+  if (rows.frozen == nullptr) {
+    own.resize(rows.n * frozen_size());
+    Freeze(params, shapes, rows, work, own.data());
+  }
+  work.Reset();
+  Pass pass = Carve(shapes.objects, rows.n, work);
+  std::copy(own.begin(), own.end(), pass.frozen);
+  const T* frozen = rows.frozen != nullptr ? rows.frozen : pass.frozen;
+  encoder_.ShapeForward(params, shapes, pass.encoder);
+  GateForward(params, shapes.objects, pass.encoder.shape, pass.gate);
+  Mix(rows, frozen, pass.gate.weights, mean);
+  const int shape_size = this->structure_.shape_size();
+  T* input = pass.value_input;
+  for (std::int64_t r = 0; r < rows.n; ++r) {
+    const T* values = frozen + r * frozen_size() + gates() * this->structure_.num_actions;
+    input = std::copy_n(values, gates(), input);
+    input = std::copy_n(pass.encoder.shape + std::int64_t{rows.object[r]} * shape_size, shape_size,
+                        input);
+  }
+  value_.Forward(params, rows.n, pass.value_input, value);
+}
+
+template <typename T>
+void SoftMixture<T>::GateBackward(const T* params, std::int64_t objects, const PolicyRows<T>& rows,
+                                  const T* frozen, GatePass<T>& pass, const T* dmean,
+                                  T* grads) const {
+  const int actions = this->structure_.num_actions;
+  std::fill_n(pass.dweights, objects * gates(), T(0));
+  for (std::int64_t r = 0; r < rows.n; ++r) {
+    const T* expert = frozen + r * frozen_size();
+    const T* from = dmean + r * actions;
+    T* dw = pass.dweights + std::int64_t{rows.object[r]} * gates();
+    for (int i = 0; i < gates(); ++i, expert += actions)
+      for (int a = 0; a < actions; ++a) dw[i] += from[a] * expert[a];
+  }
+  SoftmaxBackward<T>(objects, gates(), pass.weights, pass.dweights, pass.dweights);
+  gate_.Backward(params, objects, pass.input, pass.gate, pass.dweights, static_cast<T*>(nullptr),
+                 grads, pass.scratch);
+}
+
+template <typename T>
+void SoftMixture<T>::Backward(const T* params, const ShapeInputs<T>& shapes,
+                              const PolicyRows<T>& rows, Workspace<T>& work, const T* dmean,
+                              const T* dvalue, T* grads) const {
+  work.Reset();
+  Pass pass = Carve(shapes.objects, rows.n, work);
+  const T* frozen = rows.frozen != nullptr ? rows.frozen : pass.frozen;
+  if (!this->structure_.gate_uniform)
+    GateBackward(params, shapes.objects, rows, frozen, pass.gate, dmean, grads);
+  std::copy_n(dvalue, rows.n, pass.dvalue);
+  // A single layer needs neither its output nor scratch nor, its inputs being frozen, their
+  // gradient.
+  value_.Backward(params, rows.n, pass.value_input, pass.dvalue, pass.dvalue,
+                  static_cast<T*>(nullptr), grads, static_cast<T*>(nullptr));
+}
+
+template <typename T>
+void SoftMixture<T>::GateWeights(const T* params, const ShapeInputs<T>& shapes, Workspace<T>& work,
+                                 T* weights) const {
+  work.Reset();
+  Pass pass = Carve(shapes.objects, 0, work);
+  encoder_.ShapeForward(params, shapes, pass.encoder);
+  GateForward(params, shapes.objects, pass.encoder.shape, pass.gate);
+  std::copy_n(pass.gate.weights, shapes.objects * gates(), weights);
+}
+
+template class SoftMixture<float>;
+template class SoftMixture<double>;
+
+}  // namespace dexremoe

@@ -1,0 +1,28 @@
+// Overviews of objects and of their convex parts.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "render/canvas.h"
+#include "render/renderer.h"
+#include "render/sheet_object.h"
+
+namespace dexremoe {
+
+// Draws the i-th object of a sheet; called once each, in order, so that only one is in memory.
+using ObjectSource = std::function<SheetObject(int)>;
+
+// Objects on a floor, in blocks by category (categories[i] is object i's; equal ones adjacent).
+// `columns` cells side by side. Height follows.
+Image ObjectSheet(Renderer& renderer, const Fonts& fonts,
+                  const std::vector<std::string>& categories, const ObjectSource& source,
+                  int columns, int width);
+
+// Each object twice: as a mesh and as its convex parts, moved apart by `explode` times their
+// distance from the middle. `columns` pairs side by side.
+Image PartsSheet(Renderer& renderer, const Fonts& fonts, int count, const ObjectSource& source,
+                 double explode, int columns, int width);
+
+}  // namespace dexremoe

@@ -1,0 +1,44 @@
+// Files of format dexremoe.checkpoint: base.h5, expert_*.h5, gate.h5.
+//
+// | dataset                       | dims, type      | meaning | | stage                         |
+// text            | base, expert or gate                          | | structure/* | text, i32 |
+// PolicyStructure, field by field               | | params/BLOCK                  | [rows,cols] f32
+// | parameters, one dataset per block             | | block, trainable              | [B] text, u8
+// | blocks in order; 1 where training may change  | | adam/m, adam/v, adam/step     | [P] f32, i64
+// | optimiser over the trainable blocks in order  | | learning_rate                 | f64 | | |
+// normalizer/NAME/mean, /variance, /count | [c] f64 | running moments of obs, phys, feature, value
+// | | normalizer/clip               | f64             | limit of normalised inputs | | seed,
+// iteration, samples      | u64, i64        | with these, every random stream               | |
+// curriculum/*                  | f64, i64, u8    | difficulty and what the next decision rests on
+// | | window                        | [W,9] f64       | last ended episodes | | curve/column,
+// curve/row       | [20] text, [I,20] f64 | learning curve (no wall clock)          | | table/name,
+// /feature, /category | [K]           | objects trained on                            | |
+// environment                   | [bytes] u8      | VecEnv::Save                                  |
+// | example/*                     | f32, i32        | normalised inputs and the outputs they give |
+//
+// A resumed run continues bit for bit; the file holds no wall clock, so equal runs give equal
+// bytes.
+#pragma once
+
+#include <string>
+
+#include "io/h5.h"
+#include "rl/train_state.h"
+
+namespace dexremoe {
+
+inline constexpr H5Format kCheckpointFormat = {"dexremoe.checkpoint", 1};
+
+// Written whole or not at all.
+void WriteCheckpoint(const std::string& path, const TrainState& state,
+                     const Provenance& provenance);
+
+// Throws Error naming file and dataset: another format or version, a block that is missing or of
+// another width, an example whose output this build does not reproduce.
+TrainState ReadCheckpoint(const std::string& path);
+
+// Throws Error naming the first option that differs from those the checkpoint was written with;
+// `samples` may differ, so that a run can be made longer.
+void CheckSameOptions(const std::string& path, const std::string& options);
+
+}  // namespace dexremoe

@@ -1,0 +1,51 @@
+#include "rl/curriculum.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace dexremoe {
+
+Curriculum::Curriculum(const PpoOptions& options, const TaskDifficulty& task)
+    : options_(options), task_(task) {}
+
+CurriculumState Curriculum::Start() const {
+  CurriculumState state;
+  state.difficulty = task_;
+  if (!options_.curriculum) return state;
+  state.difficulty.goal_angle = std::min(options_.goal_angle_start, task_.goal_angle);
+  state.difficulty.velocity_tolerance = std::max(options_.velocity_start, task_.velocity_tolerance);
+  return state;
+}
+
+bool Curriculum::Update(std::int64_t samples, const std::vector<EpisodeRecord>& records,
+                        CurriculumState& state) const {
+  if (!options_.curriculum) return false;
+  state.samples += samples;
+  for (const EpisodeRecord& record : records) {
+    ++state.episodes;
+    state.successes += record.successes;
+  }
+  if (static_cast<double>(state.samples) < options_.curriculum_period || state.episodes == 0)
+    return false;
+  const double rate = static_cast<double>(state.successes) / static_cast<double>(state.episodes);
+  state.samples = state.episodes = state.successes = 0;
+  return rate > options_.curriculum_threshold && Advance(state);
+}
+
+// Moves the one whose turn it is, or the other when that one has arrived.
+bool Curriculum::Advance(CurriculumState& state) const {
+  TaskDifficulty& now = state.difficulty;
+  const bool angle_open = now.goal_angle < std::min(task_.goal_angle, std::numbers::pi);
+  const bool velocity_open = now.velocity_tolerance > task_.velocity_tolerance;
+  if (!angle_open && !velocity_open) return false;
+  const bool move_angle = angle_open && (state.angle_next || !velocity_open);
+  if (move_angle)
+    now.goal_angle = std::min(now.goal_angle * options_.goal_angle_factor, task_.goal_angle);
+  else
+    now.velocity_tolerance =
+        std::max(now.velocity_tolerance * options_.velocity_factor, task_.velocity_tolerance);
+  state.angle_next = !move_angle;
+  return true;
+}
+
+}  // namespace dexremoe

@@ -1,0 +1,43 @@
+// What training needs of a task: many environments stepped together.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "task/reorient.h"
+
+namespace dexremoe {
+
+// The two settings a curriculum may loosen; see TaskOptions.
+struct TaskDifficulty {
+  double goal_angle = 3.1416;     // rad; pi and more: any goal
+  double velocity_tolerance = 1;  // factor on the speeds a success allows
+};
+
+class VecEnv {
+ public:
+  virtual ~VecEnv() = default;
+
+  virtual int num_envs() const = 0;
+  virtual int obs_size() const = 0;
+  virtual int phys_size() const = 0;
+  virtual int num_actions() const = 0;
+
+  virtual void ResetAll() = 0;
+  // actions [N, num_actions], not clamped. Ended episodes are reset.
+  virtual const StepResult& Step(const std::vector<float>& actions) = 0;
+  // Rows of the present state; valid until the next Step.
+  virtual const std::vector<float>& obs() const = 0;   // [N, obs_size]
+  virtual const std::vector<float>& phys() const = 0;  // [N, phys_size]
+  virtual const std::vector<int>& object() const = 0;  // [N]
+  // Episodes that ended since the last call.
+  virtual std::vector<EpisodeRecord> TakeRecords() = 0;
+
+  virtual void SetDifficulty(const TaskDifficulty& difficulty) = 0;
+
+  // Everything, bit for bit.
+  virtual std::vector<std::uint8_t> Save() const = 0;
+  virtual void Restore(const std::vector<std::uint8_t>& bytes) = 0;
+};
+
+}  // namespace dexremoe

@@ -1,0 +1,40 @@
+// A policy's forward pass over many rows, spread over the threads in fixed blocks.
+#pragma once
+
+#include <vector>
+
+#include "base/thread_pool.h"
+#include "policy/policy.h"
+
+namespace dexremoe {
+
+// Where the results of Inference::Run go; null ones are not wanted.
+struct InferenceOutput {
+  float* mean = nullptr;    // [n, A]
+  float* value = nullptr;   // [n]
+  float* frozen = nullptr;  // [n, frozen_size()]
+};
+
+class Inference {
+ public:
+  // Both must outlive this.
+  Inference(const Policy<float>& policy, ThreadPool& pool);
+
+  void Run(const std::vector<float>& params, const ShapeInputs<float>& shapes,
+           const PolicyRows<float>& rows, const InferenceOutput& out);
+
+ private:
+  struct Scratch {
+    Workspace<float> work;
+    std::vector<float> mean, value, frozen;
+  };
+  void RunBlock(const std::vector<float>& params, const ShapeInputs<float>& shapes,
+                const PolicyRows<float>& rows, const InferenceOutput& out, std::int64_t begin,
+                Scratch& scratch) const;
+
+  const Policy<float>& policy_;
+  ThreadPool& pool_;
+  std::vector<Scratch> scratch_;  // per worker
+};
+
+}  // namespace dexremoe

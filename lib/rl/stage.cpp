@@ -1,0 +1,179 @@
+#include "rl/stage.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "rl/checkpoint.h"
+#include "rl/curve_file.h"
+#include "rl/reorient_env.h"
+#include "rl/trainer.h"
+
+namespace dexremoe {
+namespace {
+
+std::vector<ObjectEntry> SelectObjects(const StageOptions& stage, const StageKind& kind) {
+  for (const std::string& category : kind.categories) CategoryIndex(category);
+  std::vector<ObjectEntry> entries = ReadObjectList(stage.objects);
+  std::erase_if(entries, [&](const ObjectEntry& entry) {
+    const auto& wanted = kind.categories;
+    return entry.split != "train" || (!wanted.empty() && std::find(wanted.begin(), wanted.end(),
+                                                                   entry.category) == wanted.end());
+  });
+  if (entries.empty())
+    Fail("{}: expected objects of split train{}, found none", stage.objects,
+         kind.categories.empty()
+             ? ""
+             : fmt::format(" and category {}", fmt::join(kind.categories, ", ")));
+  if (static_cast<std::size_t>(stage.ppo.envs) < entries.size())
+    Fail("ppo.envs: expected at least one environment for each of {} objects, found {}",
+         entries.size(), stage.ppo.envs);
+  return entries;
+}
+
+void CheckSizes(const TrainState& state, const VecEnv& env, const std::string& path) {
+  const PolicyStructure& s = state.structure;
+  const auto check = [&](const char* field, int expected, int found) {
+    if (expected != found)
+      Fail("{}: structure/{}: expected {} for this hand, found {}", path, field, expected, found);
+  };
+  check("obs_size", env.obs_size(), s.obs_size);
+  check("phys_size", env.phys_size(), s.phys_size);
+  check("num_actions", env.num_actions(), s.num_actions);
+}
+
+// Where the run begins: at the checkpoint it left, or at the stage's first state.
+TrainState FirstState(const StageOptions& stage, const Options& options, const StageKind& kind,
+                      const StageStart& start, const VecEnv& env) {
+  if (stage.resume && std::filesystem::exists(stage.out)) {
+    CheckSameOptions(stage.out, options.Text());
+    TrainState state = ReadCheckpoint(stage.out);
+    if (state.table.names != start.table.names || state.table.feature != start.table.feature)
+      Fail("{}: table: expected the objects of {}, found others; start anew without --resume",
+           stage.out, stage.objects);
+    LogInfo("resuming {} at iteration {}, {} samples", stage.out, state.iteration, state.samples);
+    return state;
+  }
+  TrainState state = kind.start(start, env.obs_size(), env.phys_size(), env.num_actions());
+  CheckSizes(state, env, kind.inputs.empty() ? stage.out : kind.inputs.front());
+  return state;
+}
+
+std::string ProgressNote(const CurveRow& row, const IterationTime& time, double samples) {
+  return fmt::format(
+      "S {:.2f} per episode, {:.2f} per 600, drop {:.2f}, |dp| {:.1f} mm, {:.2f} rad, "
+      "return {:.1f}, kl {:.3f}, rate {:.1e}, {:.0f} samples/s",
+      row[2], row[3], row[4], 1e3 * row[5], row[6], row[8], row[10], row[11],
+      samples / (time.rollout + time.update));
+}
+
+class Saver {
+ public:
+  Saver(const StageOptions& stage, Provenance provenance, const std::vector<CurveRow>& rows)
+      : stage_(stage),
+        provenance_(std::move(provenance)),
+        curve_(stage.curve, rows),
+        last_(Clock::now()) {}
+
+  CurveFile& curve() { return curve_; }
+  bool Due() const {
+    return std::chrono::duration<double>(Clock::now() - last_).count() >
+           60 * stage_.checkpoint_minutes;
+  }
+  void Save(Trainer& trainer) {
+    WriteCheckpoint(stage_.out, trainer.Snapshot(), provenance_);
+    curve_.Write();
+    last_ = Clock::now();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const StageOptions& stage_;
+  Provenance provenance_;
+  CurveFile curve_;
+  Clock::time_point last_;
+};
+
+void Train(const StageOptions& stage, Trainer& trainer, Saver& saver,
+           const std::atomic<bool>& stop) {
+  Progress progress(trainer.state().stage, stage.samples);
+  while (static_cast<double>(trainer.state().samples) < stage.samples) {
+    const double before = static_cast<double>(trainer.state().samples);
+    const CurveRow& row = trainer.Iterate();
+    const double samples = static_cast<double>(trainer.state().samples) - before;
+    saver.curve().Add(row, trainer.time(), samples);
+    progress.Update(std::min(before + samples, stage.samples),
+                    ProgressNote(row, trainer.time(), samples));
+    if (stop) {
+      saver.Save(trainer);
+      Fail(
+          "stopped at {} of {:.0f} samples; {} is written; the same command with --resume=true "
+          "continues it",
+          trainer.state().samples, stage.samples, stage.out);
+    }
+    if (saver.Due()) saver.Save(trainer);
+  }
+  progress.Finish();
+  saver.Save(trainer);
+}
+
+}  // namespace
+
+void StageOptions::Register(Options& options) {
+  options.Add("objects", &objects, "objects.csv: those of split train are used").Required();
+  options.Add("out", &out, "checkpoint to write (HDF5)").Required().NotStored();
+  options.Add("curve", &curve, "learning curve to write (CSV)").NotStored();
+  options.Add("samples", &samples, "environment steps to train for").Required().Range(0, 1e15);
+  options.Add("seed", &seed, "of all random streams");
+  options.Add("workers", &workers, "threads; 0: as many as processors").Range(0, 1024).NotStored();
+  options.Add("resume", &resume, "continue from --out when it exists").NotStored();
+  options.Add("checkpoint_minutes", &checkpoint_minutes, "minutes between checkpoints")
+      .Range(0, 1e6)
+      .NotStored();
+  hand.Register(options);
+  sim.Register(options);
+  task.Register(options);
+  ppo.Register(options);
+}
+
+TrainState RunStage(const StageOptions& stage, const Options& options, const StageKind& kind,
+                    const std::atomic<bool>& stop) {
+  stage.ppo.Check();
+  ThreadPool pool(stage.workers);
+  const std::vector<ObjectEntry> entries = SelectObjects(stage, kind);
+  const std::vector<TaskObject> objects = LoadObjects(entries, {});
+  const HandModel hand = LoadHand(stage.hand);
+  ReorientBatch batch(stage.task, stage.sim, hand, objects, stage.ppo.envs, stage.seed, pool);
+  ReorientEnv env(batch);
+  const StageStart start = {stage.ppo,
+                            {stage.task.goal_angle, stage.task.velocity_tolerance},
+                            MakeShapeTable(objects),
+                            stage.seed};
+  std::vector<std::string> inputs = {stage.objects, stage.hand.urdf};
+  inputs.insert(inputs.end(), kind.inputs.begin(), kind.inputs.end());
+  for (const ObjectEntry& entry : entries) inputs.push_back(entry.grasps);
+  Trainer trainer(stage.ppo, start.task, FirstState(stage, options, kind, start, env), env, pool);
+  Saver saver(stage, MakeProvenance(options, stage.seed, inputs), trainer.state().curve);
+  LogInfo("{}: {} objects, {} environments, {} parameters of which {} in training",
+          trainer.state().stage, objects.size(), env.num_envs(), trainer.policy().layout().size(),
+          TrainableSet(trainer.policy().layout(), trainer.policy().trainable()).size());
+  Train(stage, trainer, saver, stop);
+  TrainState state = trainer.state();
+  state.environment.clear();
+  return state;
+}
+
+std::string StageSummary(const StageOptions& stage, const TrainState& state) {
+  std::string text = fmt::format("{}: {} samples", stage.out, state.samples);
+  if (state.curve.empty()) return text;
+  const CurveRow& row = state.curve.back();
+  return text + fmt::format(
+                    ", {:.3f} successes per episode, {:.3f} per 600 steps, drop rate {:.3f}, "
+                    "mean |dp| {:.1f} mm, mean angle {:.3f} rad, return {:.2f} "
+                    "(last {:.0f} episodes, with exploration)",
+                    row[2], row[3], row[4], 1e3 * row[5], row[6], row[8], row[9]);
+}
+
+}  // namespace dexremoe

@@ -1,0 +1,55 @@
+// What train_base, train_expert and train_gate have in common: objects in, checkpoint out.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/options.h"
+#include "hand/hand_model.h"
+#include "rl/ppo_options.h"
+#include "rl/start.h"
+#include "rl/train_state.h"
+#include "sim/batch_sim.h"
+#include "task/reorient.h"
+
+namespace dexremoe {
+
+struct StageOptions {
+  std::string objects;  // objects.csv
+  std::string out;
+  std::string curve;  // CSV; empty for none
+  double samples = 0;
+  std::uint64_t seed = 1;
+  int workers = 0;
+  bool resume = false;
+  double checkpoint_minutes = 2;
+  HandOptions hand;
+  SimOptions sim;
+  TaskOptions task;
+  PpoOptions ppo;
+  void Register(Options& options);
+};
+
+// What sets the stages apart.
+struct StageKind {
+  std::vector<std::string> categories;  // objects to train on; empty for all
+  std::vector<std::string> inputs;      // checkpoints it starts from
+  // The first state; the sizes are those of the environments.
+  std::function<TrainState(const StageStart& start, int obs_size, int phys_size, int num_actions)>
+      start;
+};
+
+// Trains on the objects of split "train" until `samples` environment steps are done; writes --out
+// and --curve every checkpoint_minutes and at the end. When `stop` turns true, finishes the
+// iteration, writes both and throws Error that says how to resume. Throws Error on bad input.
+// Returns the final state, without the environments' bytes.
+TrainState RunStage(const StageOptions& stage, const Options& options, const StageKind& kind,
+                    const std::atomic<bool>& stop);
+
+// One line for people: "base.h5: 2000000 samples, ...".
+std::string StageSummary(const StageOptions& stage, const TrainState& state);
+
+}  // namespace dexremoe

@@ -1,0 +1,62 @@
+// Everything a training run is, apart from its options: what a checkpoint holds.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "nn/adam.h"
+#include "nn/normalizer.h"
+#include "policy/shape_table.h"
+#include "policy/structure.h"
+#include "rl/curriculum.h"
+
+namespace dexremoe {
+
+struct Normalizers {
+  RunningMoments obs, phys, feature;  // inputs; frozen once the base is trained
+  RunningMoments value{1};            // returns; follows every stage
+  double clip = 5;                    // of the inputs
+};
+
+// One line of the learning curve; columns as kCurveColumns.
+inline constexpr std::array<const char*, 20> kCurveColumns = {"iteration",
+                                                              "samples",
+                                                              "successes_per_episode",
+                                                              "successes_per_600",
+                                                              "drop_rate",
+                                                              "mean_distance",
+                                                              "mean_angle",
+                                                              "episode_length",
+                                                              "return",
+                                                              "episodes",
+                                                              "kl",
+                                                              "learning_rate",
+                                                              "log_std",
+                                                              "policy_loss",
+                                                              "value_loss",
+                                                              "explained_variance",
+                                                              "clip_fraction",
+                                                              "gradient_norm",
+                                                              "goal_angle",
+                                                              "velocity_tolerance"};
+using CurveRow = std::array<double, kCurveColumns.size()>;
+
+struct TrainState {
+  std::string stage;  // "base", "expert" or "gate"
+  PolicyStructure structure;
+  std::uint64_t seed = 0;  // with the counters, all random streams
+  ShapeTable table;        // the objects trained on
+  Normalizers normalizers;
+  std::vector<float> params;  // in the order of the policy's layout
+  AdamState adam;             // over the trainable blocks, in the order of the layout
+  double learning_rate = 0;
+  std::int64_t iteration = 0, samples = 0;
+  CurriculumState curriculum;
+  std::vector<EpisodeRecord> window;      // last ended episodes, oldest first
+  std::vector<CurveRow> curve;            // one per iteration
+  std::vector<std::uint8_t> environment;  // VecEnv::Save
+};
+
+}  // namespace dexremoe

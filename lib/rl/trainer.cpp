@@ -1,0 +1,130 @@
+#include "rl/trainer.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "base/check.h"
+
+namespace dexremoe {
+namespace {
+
+double Seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Means over the window of ended episodes. NaN until an episode has ended.
+struct WindowMeans {
+  double successes = NAN, per_600 = NAN, drops = NAN, distance = NAN, angle = NAN, length = NAN,
+         reward = NAN;
+};
+
+WindowMeans MeansOf(const std::vector<EpisodeRecord>& window) {
+  WindowMeans means;
+  if (window.empty()) return means;
+  double successes = 0, drops = 0, steps = 0, distance = 0, angle = 0, reward = 0;
+  for (const EpisodeRecord& record : window) {
+    successes += record.successes;
+    drops += record.end == EpisodeEnd::kFall;
+    steps += record.length;
+    distance += record.mean_distance * record.length;
+    angle += record.mean_angle * record.length;
+    reward += record.total_reward;
+  }
+  const double n = static_cast<double>(window.size());
+  means.successes = successes / n;
+  means.per_600 = 600 * successes / steps;
+  means.drops = drops / n;
+  means.distance = distance / steps;
+  means.angle = angle / steps;
+  means.length = steps / n;
+  means.reward = reward / n;
+  return means;
+}
+
+}  // namespace
+
+Trainer::Trainer(const PpoOptions& options, const TaskDifficulty& task, TrainState state,
+                 VecEnv& env, ThreadPool& pool)
+    : options_(options),
+      state_(std::move(state)),
+      env_(env),
+      policy_(MakePolicy<float>(state_.structure)),
+      curriculum_(options, task) {
+  DEX_CHECK_EQ(static_cast<std::int64_t>(state_.params.size()), policy_->layout().size());
+  if (options_.stats_window == 0) options_.stats_window = env.num_envs();
+  shapes_ = std::make_unique<ShapeRows>(state_.table, state_.normalizers.feature,
+                                        state_.normalizers.clip, state_.structure.num_categories);
+  rollout_ = std::make_unique<Rollout>(options_, *policy_, env, pool);
+  learner_ = std::make_unique<PpoLearner>(options_, *policy_, pool);
+  if (!state_.environment.empty()) env_.Restore(state_.environment);
+  env_.SetDifficulty(state_.curriculum.difficulty);
+  if (state_.environment.empty()) env_.ResetAll();
+}
+
+Trainer::~Trainer() = default;
+
+const CurveRow& Trainer::Iterate() {
+  const double start = Seconds();
+  const bool learn_moments = state_.structure.train_encoders;
+  RunningMoments obs = state_.normalizers.obs, phys = state_.normalizers.phys;
+  const RolloutBatch& batch = rollout_->Collect(
+      state_, shapes_->inputs(), learn_moments ? &obs : nullptr, learn_moments ? &phys : nullptr);
+  const double middle = Seconds();
+  const double rate = state_.learning_rate;
+  const UpdateStats stats = learner_->Update(batch, shapes_->inputs(), state_);
+  state_.normalizers.obs = std::move(obs);
+  state_.normalizers.phys = std::move(phys);
+  time_ = {middle - start, Seconds() - middle};
+
+  const std::int64_t samples = static_cast<std::int64_t>(batch.steps) * batch.envs;
+  ++state_.iteration;
+  state_.samples += samples;
+  AddRecords(batch.records);
+  state_.curve.push_back(MakeRow(stats, rate));
+  if (curriculum_.Update(samples, batch.records, state_.curriculum))
+    env_.SetDifficulty(state_.curriculum.difficulty);
+  return state_.curve.back();
+}
+
+const TrainState& Trainer::Snapshot() {
+  state_.environment = env_.Save();
+  return state_;
+}
+
+void Trainer::AddRecords(const std::vector<EpisodeRecord>& records) {
+  std::vector<EpisodeRecord>& window = state_.window;
+  window.insert(window.end(), records.begin(), records.end());
+  const std::size_t limit = static_cast<std::size_t>(options_.stats_window);
+  if (window.size() > limit) window.erase(window.begin(), window.end() - limit);
+}
+
+CurveRow Trainer::MakeRow(const UpdateStats& stats, double learning_rate) const {
+  const WindowMeans means = MeansOf(state_.window);
+  const ParamBlock& spread = policy_->layout().block(policy_->log_std_block());
+  double log_std = 0;
+  for (std::int64_t a = 0; a < spread.size(); ++a)
+    log_std += state_.params[spread.offset + a] / static_cast<double>(spread.size());
+  const TaskDifficulty& difficulty = state_.curriculum.difficulty;
+  return {static_cast<double>(state_.iteration),
+          static_cast<double>(state_.samples),
+          means.successes,
+          means.per_600,
+          means.drops,
+          means.distance,
+          means.angle,
+          means.length,
+          means.reward,
+          static_cast<double>(state_.window.size()),
+          stats.kl,
+          learning_rate,
+          log_std,
+          stats.policy_loss,
+          stats.value_loss,
+          stats.explained_variance,
+          stats.clip_fraction,
+          stats.gradient_norm,
+          difficulty.goal_angle,
+          difficulty.velocity_tolerance};
+}
+
+}  // namespace dexremoe

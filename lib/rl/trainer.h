@@ -1,0 +1,55 @@
+// The training loop: rollout, update, curriculum, figures.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/thread_pool.h"
+#include "policy/policy.h"
+#include "rl/env.h"
+#include "rl/ppo.h"
+#include "rl/ppo_options.h"
+#include "rl/rollout.h"
+#include "rl/train_state.h"
+
+namespace dexremoe {
+
+// Wall-clock of one iteration; kept apart from the state, which must not depend on it.
+struct IterationTime {
+  double rollout = 0, update = 0;  // s
+};
+
+class Trainer {
+ public:
+  // Continues from `state`: restores the environments when state.environment is filled, else starts
+  // new episodes. All references must outlive this.
+  Trainer(const PpoOptions& options, const TaskDifficulty& task, TrainState state, VecEnv& env,
+          ThreadPool& pool);
+  ~Trainer();
+
+  // One rollout and update; appends to state().curve.
+  const CurveRow& Iterate();
+  const IterationTime& time() const { return time_; }
+
+  const TrainState& state() const { return state_; }
+  const Policy<float>& policy() const { return *policy_; }
+  // The state with the environments' bytes, ready for WriteCheckpoint.
+  const TrainState& Snapshot();
+
+ private:
+  void AddRecords(const std::vector<EpisodeRecord>& records);
+  CurveRow MakeRow(const UpdateStats& stats, double learning_rate) const;
+
+  PpoOptions options_;
+  TrainState state_;
+  VecEnv& env_;
+  std::unique_ptr<Policy<float>> policy_;
+  Curriculum curriculum_;
+  std::unique_ptr<ShapeRows> shapes_;
+  std::unique_ptr<Rollout> rollout_;
+  std::unique_ptr<PpoLearner> learner_;
+  IterationTime time_;
+};
+
+}  // namespace dexremoe

@@ -1,0 +1,36 @@
+// The process-wide and per-thread parts of ODE.
+#pragma once
+
+#include <ode/ode.h>
+
+namespace dexremoe {
+
+static_assert(sizeof(dReal) == sizeof(double), "the packaged ODE computes in double precision");
+
+// Starts ODE once in the process and sends its messages to our log: its own handlers print and
+// exit. Safe from any thread.
+void StartOde();
+
+// Call on every thread before it steps a world.
+void PrepareOdeThread();
+
+// What worlds stepped one after the other share: the stepper's own (single) thread, its working
+// memory, and the group of contact joints that live for one step. Belongs to one chunk of
+// environments, so only one thread at a time uses it.
+class OdeArena {
+ public:
+  OdeArena();
+  ~OdeArena();
+  OdeArena(const OdeArena&) = delete;
+  OdeArena& operator=(const OdeArena&) = delete;
+
+  dWorldID CreateWorld();
+  dJointGroupID contact_joints() const { return contact_joints_; }
+
+ private:
+  dThreadingImplementationID threading_;
+  dJointGroupID contact_joints_;
+  dWorldID memory_owner_;  // holds the working memory; never stepped
+};
+
+}  // namespace dexremoe

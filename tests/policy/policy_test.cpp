@@ -1,0 +1,292 @@
+// Policies: gradients against central differences, frozen blocks, and what a mixture must equal.
+#include "policy/policy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/error.h"
+#include "nn/gradient_check.h"
+#include "policy/shape_table.h"
+
+namespace dexremoe {
+namespace {
+
+PolicyStructure SmallBase() {
+  PolicyStructure s;
+  s.obs_size = 5;
+  s.phys_size = 4;
+  s.feature_size = 7;
+  s.num_actions = 3;
+  s.cloud_widths = {6, 5};
+  s.extrinsics_widths = {8, 7};
+  s.z_size = 6;
+  s.hidden = {10, 9};
+  return s;
+}
+
+PolicyStructure SmallMixture(const std::string& gate_input) {
+  PolicyStructure s = SmallBase();
+  s.kind = "soft_mixture";
+  s.train_encoders = false;
+  s.experts = 3;
+  s.gate_widths = {8, 8};
+  s.gate_input = gate_input;
+  return s;
+}
+
+// Random inputs of n rows over K objects, and random weights of a scalar loss.
+template <typename T>
+struct Problem {
+  Problem(const PolicyStructure& s, std::int64_t rows, std::int64_t objects) : n(rows), k(objects) {
+    Rng rng(3, Stream::kTest, {1});
+    const auto draw = [&](std::int64_t count) {
+      std::vector<T> values(count);
+      for (T& v : values) v = static_cast<T>(rng.Normal());
+      return values;
+    };
+    obs = draw(n * s.obs_size);
+    phys = draw(n * s.phys_size);
+    feature = draw(k * s.feature_size);
+    category.assign(k * s.num_categories, T(0));
+    for (std::int64_t i = 0; i < k; ++i) category[i * s.num_categories + i % s.num_categories] = 1;
+    for (std::int64_t i = 0; i < n; ++i) object.push_back(static_cast<int>((2 * i + 1) % k));
+    dmean = draw(n * s.num_actions);
+    dvalue = draw(n);
+  }
+  PolicyRows<T> rows() const { return {n, obs.data(), phys.data(), object.data(), nullptr}; }
+  ShapeInputs<T> shapes() const { return {k, feature.data(), category.data()}; }
+
+  std::int64_t n, k;
+  std::vector<T> obs, phys, feature, category, dmean, dvalue;
+  std::vector<int> object;
+};
+
+std::vector<double> RandomParams(const Policy<double>& policy) {
+  Rng rng(4, Stream::kTest, {2});
+  std::vector<double> params(policy.layout().size());
+  for (double& p : params) p = 0.4 * rng.Normal();
+  return params;
+}
+
+// loss = <dmean, mean> + <dvalue, value>.
+double LossOf(const Policy<double>& policy, const Problem<double>& problem,
+              const std::vector<double>& params) {
+  Workspace<double> work;
+  std::vector<double> mean(problem.dmean.size()), value(problem.n);
+  policy.Forward(params.data(), problem.shapes(), problem.rows(), work, mean.data(), value.data());
+  return std::inner_product(mean.begin(), mean.end(), problem.dmean.begin(), 0.0) +
+         std::inner_product(value.begin(), value.end(), problem.dvalue.begin(), 0.0);
+}
+
+// Checks every trainable element; frozen ones must stay untouched.
+void CheckGradients(const PolicyStructure& structure) {
+  const auto policy = MakePolicy<double>(structure);
+  const Problem<double> problem(structure, 9, 4);
+  const std::vector<double> params = RandomParams(*policy);
+  constexpr double kUntouched = 1e30;
+  std::vector<double> grads(params.size(), kUntouched);
+  std::vector<std::int64_t> dense;
+  for (std::size_t b = 0; b < policy->trainable().size(); ++b) {
+    const ParamBlock& block = policy->layout().block(static_cast<int>(b));
+    if (!policy->trainable()[b]) continue;
+    for (std::int64_t i = 0; i < block.size(); ++i) {
+      grads[block.offset + i] = 0;
+      dense.push_back(block.offset + i);
+    }
+  }
+  Workspace<double> work;
+  std::vector<double> mean(problem.dmean.size()), value(problem.n);
+  policy->Forward(params.data(), problem.shapes(), problem.rows(), work, mean.data(), value.data());
+  policy->Backward(params.data(), problem.shapes(), problem.rows(), work, problem.dmean.data(),
+                   problem.dvalue.data(), grads.data());
+  std::vector<double> x, gradient;
+  for (const std::int64_t i : dense) {
+    x.push_back(params[i]);
+    gradient.push_back(grads[i]);
+  }
+  const auto loss = [&](const std::vector<double>& moved) {
+    std::vector<double> all = params;
+    for (std::size_t i = 0; i < dense.size(); ++i) all[dense[i]] = moved[i];
+    return LossOf(*policy, problem, all);
+  };
+  const GradientReport report = CheckGradient(loss, x, gradient);
+  EXPECT_TRUE(report.ok) << report.Text();
+  EXPECT_EQ(static_cast<std::size_t>(std::count(grads.begin(), grads.end(), kUntouched)),
+            grads.size() - dense.size());
+}
+
+TEST(Policy, GradientsOfTheBaseMatchCentralDifferences) { CheckGradients(SmallBase()); }
+
+TEST(Policy, GradientsOfAnExpertMatchCentralDifferencesAndSpareTheEncoders) {
+  PolicyStructure s = SmallBase();
+  s.train_encoders = false;
+  CheckGradients(s);
+  const auto policy = MakePolicy<double>(s);
+  for (std::size_t b = 0; b < policy->trainable().size(); ++b)
+    EXPECT_EQ(policy->trainable()[b] == 0,
+              policy->layout().block(static_cast<int>(b)).name.starts_with("encoder/"));
+}
+
+TEST(Policy, GradientsOfTheMixtureMatchCentralDifferences) {
+  for (const char* input : {"full", "cloud", "category"}) {
+    SCOPED_TRACE(input);
+    CheckGradients(SmallMixture(input));
+  }
+  PolicyStructure uniform = SmallMixture("full");
+  uniform.gate_uniform = true;
+  CheckGradients(uniform);
+}
+
+TEST(Policy, MixtureTrainsNothingButGateAndValueHead) {
+  const auto policy = MakePolicy<float>(SmallMixture("full"));
+  for (std::size_t b = 0; b < policy->trainable().size(); ++b) {
+    const std::string& name = policy->layout().block(static_cast<int>(b)).name;
+    EXPECT_EQ(policy->trainable()[b] != 0, name.starts_with("gate/") || name.starts_with("value/"))
+        << name;
+  }
+}
+
+TEST(Policy, BaseHasThePapersNumberOfParameters) {
+  const auto policy = MakePolicy<float>(PolicyStructure());
+  const auto linear = [](std::int64_t c, std::int64_t k) { return (c + 1) * k; };
+  const std::int64_t cloud = linear(100, 32) + 2 * linear(32, 32);
+  const std::int64_t extrinsics = linear(61, 256) + linear(256, 128) + linear(128, 66);
+  const std::int64_t actor = linear(132, 512) + linear(512, 512) + linear(512, 11) + linear(512, 1);
+  EXPECT_EQ(policy->layout().size(), cloud + extrinsics + actor + 11);
+}
+
+TEST(Policy, FrozenFeaturesChangeNothing) {
+  PolicyStructure expert = SmallBase();
+  expert.train_encoders = false;
+  for (const PolicyStructure& s : {expert, SmallMixture("full")}) {
+    const auto policy = MakePolicy<double>(s);
+    const Problem<double> problem(s, 7, 3);
+    const std::vector<double> params = RandomParams(*policy);
+    Workspace<double> work;
+    std::vector<double> frozen(problem.n * policy->frozen_size());
+    std::vector<double> mean(problem.dmean.size()), value(problem.n), mean2 = mean, value2 = value;
+    policy->Forward(params.data(), problem.shapes(), problem.rows(), work, mean.data(),
+                    value.data());
+    policy->Freeze(params.data(), problem.shapes(), problem.rows(), work, frozen.data());
+    PolicyRows<double> rows = problem.rows();
+    rows.frozen = frozen.data();
+    policy->Forward(params.data(), problem.shapes(), rows, work, mean2.data(), value2.data());
+    EXPECT_EQ(mean, mean2);
+    EXPECT_EQ(value, value2);
+  }
+}
+
+TEST(Policy, ObjectsOfTheTableCanBeRelabelled) {
+  const PolicyStructure s = SmallBase();
+  const auto policy = MakePolicy<double>(s);
+  Problem<double> problem(s, 8, 4);
+  const std::vector<double> params = RandomParams(*policy);
+  const double before = LossOf(*policy, problem, params);
+  // Reverse the table and the labels with it.
+  const Problem<double> old = problem;
+  for (int k = 0; k < 4; ++k) {
+    std::copy_n(old.feature.begin() + k * 7, 7, problem.feature.begin() + (3 - k) * 7);
+    std::copy_n(old.category.begin() + k * 6, 6, problem.category.begin() + (3 - k) * 6);
+  }
+  for (int& object : problem.object) object = 3 - object;
+  EXPECT_NEAR(LossOf(*policy, problem, params), before, 1e-12);
+}
+
+// Means of expert i alone, read from the mixture's frozen features.
+TEST(Policy, MixtureIsTheWeightedSumOfItsExperts) {
+  const PolicyStructure s = SmallMixture("full");
+  const auto policy = MakePolicy<double>(s);
+  const Problem<double> problem(s, 6, 4);
+  const std::vector<double> params = RandomParams(*policy);
+  Workspace<double> work;
+  std::vector<double> frozen(problem.n * policy->frozen_size()), weights(4 * 3);
+  std::vector<double> mean(problem.dmean.size()), value(problem.n);
+  policy->Freeze(params.data(), problem.shapes(), problem.rows(), work, frozen.data());
+  policy->GateWeights(params.data(), problem.shapes(), work, weights.data());
+  policy->Forward(params.data(), problem.shapes(), problem.rows(), work, mean.data(), value.data());
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_NEAR(weights[3 * k] + weights[3 * k + 1] + weights[3 * k + 2], 1, 1e-12);
+    for (int i = 0; i < 3; ++i) EXPECT_GT(weights[3 * k + i], 0);
+  }
+  for (int r = 0; r < 6; ++r)
+    for (int a = 0; a < 3; ++a) {
+      double expected = 0;
+      for (int i = 0; i < 3; ++i)
+        expected +=
+            weights[3 * problem.object[r] + i] * frozen[r * policy->frozen_size() + i * 3 + a];
+      EXPECT_NEAR(mean[r * 3 + a], expected, 1e-12);
+    }
+}
+
+TEST(Policy, UniformMixtureWeighsAllExpertsAlike) {
+  PolicyStructure s = SmallMixture("full");
+  s.gate_uniform = true;
+  const auto policy = MakePolicy<double>(s);
+  const Problem<double> problem(s, 2, 4);
+  const std::vector<double> params = RandomParams(*policy);
+  Workspace<double> work;
+  std::vector<double> weights(4 * 3);
+  policy->GateWeights(params.data(), problem.shapes(), work, weights.data());
+  for (const double w : weights) EXPECT_DOUBLE_EQ(w, 1.0 / 3);
+}
+
+TEST(Policy, GateSeesWhatItsInputSays) {
+  // Two objects of one category with other clouds; two of one cloud with other categories.
+  for (const char* input : {"cloud", "category"}) {
+    const PolicyStructure s = SmallMixture(input);
+    const auto policy = MakePolicy<double>(s);
+    Problem<double> problem(s, 1, 3);
+    std::fill(problem.category.begin(), problem.category.end(), 0);
+    problem.category[0] = problem.category[6] = problem.category[2 * 6 + 1] = 1;
+    std::copy_n(problem.feature.begin(), 7, problem.feature.begin() + 2 * 7);
+    const std::vector<double> params = RandomParams(*policy);
+    Workspace<double> work;
+    std::vector<double> w(3 * 3);
+    policy->GateWeights(params.data(), problem.shapes(), work, w.data());
+    const bool same_category_same_weights = w[0] == w[3], same_cloud_same_weights = w[0] == w[6];
+    EXPECT_EQ(same_category_same_weights, std::string(input) == "category");
+    EXPECT_EQ(same_cloud_same_weights, std::string(input) == "cloud");
+  }
+}
+
+TEST(Policy, FreshGateIsNearTheUniformAverage) {
+  const PolicyStructure s = SmallMixture("full");
+  const auto policy = MakePolicy<float>(s);
+  const Problem<float> problem(s, 1, 4);
+  std::vector<float> params(policy->layout().size());
+  policy->Initialize(7, -1, 1, params.data());
+  Workspace<float> work;
+  std::vector<float> weights(4 * 3);
+  policy->GateWeights(params.data(), problem.shapes(), work, weights.data());
+  for (const float w : weights) EXPECT_NEAR(w, 1.0 / 3, 0.02);
+  const ParamBlock& spread = policy->layout().block(policy->log_std_block());
+  for (int a = 0; a < 3; ++a) EXPECT_EQ(params[spread.offset + a], -1);
+}
+
+TEST(Policy, UnknownKindsAndEmptyLayersAreErrors) {
+  PolicyStructure s = SmallBase();
+  s.kind = "oracle";
+  EXPECT_THROW(MakePolicy<float>(s), Error);
+  s = SmallBase();
+  s.hidden = {};
+  EXPECT_THROW(MakePolicy<float>(s), Error);
+  s = SmallMixture("colour");
+  EXPECT_THROW(MakePolicy<float>(s), Error);
+}
+
+TEST(ShapeTable, ObjectWithoutDescriptorIsNamed) {
+  TaskObject object;
+  object.name = "teapot";
+  try {
+    MakeShapeTable({object});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "object teapot: descriptor: expected 100 values, found 0");
+  }
+}
+
+}  // namespace
+}  // namespace dexremoe

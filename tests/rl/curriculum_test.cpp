@@ -1,0 +1,79 @@
+// The curriculum's rule: when it moves, what it moves, where it stops.
+#include "rl/curriculum.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace dexremoe {
+namespace {
+
+PpoOptions Options() {
+  PpoOptions o;
+  o.curriculum = true;
+  o.goal_angle_start = 1;
+  o.goal_angle_factor = 1.5;
+  o.velocity_start = 5;
+  o.velocity_factor = 0.5;
+  o.curriculum_threshold = 1.5;
+  o.curriculum_period = 100;
+  return o;
+}
+
+std::vector<EpisodeRecord> Episodes(std::vector<int> successes, int length = 600) {
+  std::vector<EpisodeRecord> records;
+  for (const int s : successes) {
+    EpisodeRecord r;
+    r.successes = s;
+    r.length = length;
+    records.push_back(r);
+  }
+  return records;
+}
+
+TEST(Curriculum, OffItIsTheTask) {
+  PpoOptions options = Options();
+  options.curriculum = false;
+  const Curriculum curriculum(options, {2.5, 1.2});
+  CurriculumState state = curriculum.Start();
+  EXPECT_EQ(state.difficulty.goal_angle, 2.5);
+  EXPECT_EQ(state.difficulty.velocity_tolerance, 1.2);
+  EXPECT_FALSE(curriculum.Update(1000, Episodes({9, 9}), state));
+}
+
+TEST(Curriculum, MovesAngleAndVelocityInTurnUntilTheTask) {
+  const Curriculum curriculum(Options(), {std::numbers::pi, 1});
+  CurriculumState state = curriculum.Start();
+  const double expected[][2] = {{1.5, 5},
+                                {1.5, 2.5},
+                                {2.25, 2.5},
+                                {2.25, 1.25},
+                                {std::numbers::pi, 1.25},
+                                {std::numbers::pi, 1}};
+  for (const auto& e : expected) {
+    EXPECT_TRUE(curriculum.Update(100, Episodes({2}), state));
+    EXPECT_DOUBLE_EQ(state.difficulty.goal_angle, e[0]);
+    EXPECT_DOUBLE_EQ(state.difficulty.velocity_tolerance, e[1]);
+  }
+  EXPECT_FALSE(curriculum.Update(100, Episodes({5}), state));
+}
+
+TEST(Curriculum, WaitsForThePeriodAndJudgesAllEpisodesInIt) {
+  const Curriculum curriculum(Options(), {3.2, 1});
+  CurriculumState state = curriculum.Start();
+  EXPECT_FALSE(curriculum.Update(60, Episodes({4}), state));
+  EXPECT_FALSE(curriculum.Update(60, Episodes({0, 0, 0}), state));  // mean 1
+  EXPECT_FALSE(curriculum.Update(60, Episodes({4}), state));        // the new period is not over
+  EXPECT_TRUE(curriculum.Update(60, Episodes({0, 1}), state));      // mean 5 / 3
+  EXPECT_FALSE(curriculum.Update(200, {}, state));                  // no episode, no decision
+}
+
+// Many short episodes with few successes each must not count as progress.
+TEST(Curriculum, FastDroppersDoNotPass) {
+  const Curriculum curriculum(Options(), {3.2, 1});
+  CurriculumState state = curriculum.Start();
+  EXPECT_FALSE(curriculum.Update(100, Episodes(std::vector<int>(50, 1), 20), state));
+}
+
+}  // namespace
+}  // namespace dexremoe

@@ -1,0 +1,60 @@
+// Tables of evaluation results beside the paper's: Markdown, CSV and LaTeX.
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/options.h"
+#include "eval/tables.h"
+#include "io/atomic_file.h"
+
+namespace {
+
+// Files with the same label are seeds of one method.
+std::vector<dexremoe::MethodResults> Group(const std::vector<std::string>& files,
+                                           const std::vector<std::string>& labels) {
+  if (files.size() != labels.size())
+    throw dexremoe::UsageError(fmt::format(
+        "--labels: expected as many as files in --eval ({}), found {}", files.size(), labels.size()));
+  std::vector<dexremoe::MethodResults> methods;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    std::size_t m = 0;
+    while (m < methods.size() && methods[m].label != labels[i]) ++m;
+    if (m == methods.size()) methods.push_back({labels[i], {}});
+    methods[m].evals.push_back(dexremoe::ReadEval(files[i]));
+  }
+  return methods;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::string> files, labels;
+  std::string paper, paper_table = "1", out;
+  dexremoe::BootstrapOptions bootstrap;
+  dexremoe::Options options(
+      "tabulate",
+      "Writes OUT.md, OUT.csv, OUT.tex and OUT_objects.csv from evaluations, with 95 % intervals, "
+      "beside the numbers of the paper.",
+      "tabulate --eval=eval/base.h5,eval/gate.h5 --labels=\"Base,DexReMoE\" "
+      "--paper=data/paper_tables.csv --out=tables/table1");
+  options.Add("eval", &files, "evaluations (dexremoe.eval), one per row").Required();
+  options.Add("labels", &labels, "row labels; equal labels are seeds of one method").Required();
+  options.Add("paper", &paper, "CSV with the paper's numbers; empty leaves them out");
+  options.Add("paper_table", &paper_table, "which of the paper's tables");
+  options.Add("resamples", &bootstrap.resamples, "bootstrap resamples").Range(0, 1e6);
+  options.Add("seed", &bootstrap.seed, "seed of the bootstrap");
+  options.Add("out", &out, "path without ending").Required().NotStored();
+  return dexremoe::RunTool(options, argc, argv, [&] {
+    const auto methods = Group(files, labels);
+    std::vector<dexremoe::PaperNumber> numbers;
+    if (!paper.empty()) numbers = dexremoe::ReadPaperNumbers(paper);
+    const auto tables = dexremoe::MakeTables(methods, numbers, paper_table, bootstrap);
+    const std::string markdown = dexremoe::MarkdownOf(tables);
+    dexremoe::WriteFile(out + ".csv", dexremoe::CsvOf(tables));
+    dexremoe::WriteFile(out + ".tex", dexremoe::LatexOf(tables));
+    dexremoe::WriteFile(out + "_objects.csv", dexremoe::ObjectCsvOf(methods, bootstrap));
+    dexremoe::WriteFile(out + ".md", markdown);
+    std::fputs(markdown.c_str(), stdout);
+  });
+}

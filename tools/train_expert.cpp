@@ -1,0 +1,30 @@
+// An expert: the base policy trained on with frozen encoders, on some categories or on all (the
+// generalist) (paper, III-D).
+#include <cstdio>
+
+#include "rl/checkpoint.h"
+#include "rl/stage.h"
+#include "rl/stop_signal.h"
+
+using namespace dexremoe;
+
+int main(int argc, char** argv) {
+  Options options("train_expert", "Fine-tune the base policy to an expert; encoders stay frozen.",
+                  "train_expert --base=base.h5 --objects=objects.csv --categories=airplane "
+                  "--out=expert_airplane.h5 --samples=1e6");
+  StageOptions stage;
+  StageKind kind;
+  std::string base;
+  options.Add("base", &base, "checkpoint of train_base").Required();
+  options.Add("categories", &kind.categories, "categories to train on; none: all (generalist)");
+  stage.Register(options);
+  return RunTool(options, argc, argv, [&] {
+    const TrainState parent = ReadCheckpoint(base);
+    kind.inputs = {base};
+    kind.start = [&](const StageStart& start, int, int, int) {
+      return StartExpert(start, parent, base);
+    };
+    const TrainState state = RunStage(stage, options, kind, CatchStopSignals());
+    std::puts(StageSummary(stage, state).c_str());
+  });
+}
