@@ -23,6 +23,7 @@ commas = $(subst $(space),$(comma),$(strip $(1)))
 include mk/deps.mk
 include mk/build.mk
 include mk/test.mk
+include mk/bench.mk
 include mk/experiment.mk
 
 .PHONY: help

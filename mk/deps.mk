@@ -3,7 +3,7 @@
 DEBIAN_PACKAGES := g++ make pkg-config ca-certificates \
   libode-dev libeigen3-dev libassimp-dev libpcl-dev libccd-dev libhdf5-dev libosmesa6-dev \
   libdnnl-dev libcli11-dev libspdlog-dev libfmt-dev libtomlplusplus-dev liburdfdom-dev \
-  liburdfdom-headers-dev libqhull-dev libpng-dev libxxhash-dev libgtest-dev libgmock-dev \
+  liburdfdom-headers-dev libqhull-dev libpng-dev libfreetype-dev libxxhash-dev libgtest-dev libgmock-dev \
   libbenchmark-dev gnuplot-nox fonts-dejavu-core ffmpeg
 
 .PHONY: deps

@@ -1,10 +1,11 @@
 // Splits an object into convex parts.
+#include "geometry/decompose.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 
 #include "base/options.h"
-#include "geometry/decompose.h"
 #include "geometry/mesh_io.h"
 #include "geometry/object_files.h"
 
@@ -16,7 +17,8 @@ int main(int argc, char** argv) {
   DecomposeOptions decompose;
   options.Add("mesh", &mesh_path, "object file made by scale_mesh").Required();
   options.Add("out", &out, "file of the parts to write").Required().NotStored();
-  options.Add("export", &export_path, "also write the parts as .obj, one group per part").NotStored();
+  options.Add("export", &export_path, "also write the parts as .obj, one group per part")
+      .NotStored();
   decompose.Register(options);
   return RunTool(options, argc, argv, [&] {
     const ObjectMesh object = ReadObjectMesh(mesh_path);

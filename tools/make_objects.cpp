@@ -36,12 +36,15 @@ std::vector<std::string> ManifestRow(const RecipeFile& recipe, const TriMesh& me
 }  // namespace
 
 int main(int argc, char** argv) {
-  Options options("make_objects", "Makes meshes of the object recipes, 0.1 m long, one closed shell each.",
+  Options options("make_objects",
+                  "Makes meshes of the object recipes, 0.1 m long, one closed shell each.",
                   "make_objects --out=meshes/builtin");
   std::string out, recipes = "data/recipes";
   std::uint64_t seed = 1;
   int workers = 0;
-  options.Add("out", &out, "folder to write CATEGORY/NAME.ply and manifest.csv to").Required().NotStored();
+  options.Add("out", &out, "folder to write CATEGORY/NAME.ply and manifest.csv to")
+      .Required()
+      .NotStored();
   options.Add("recipes", &recipes, "folder of CATEGORY/NAME.recipe files");
   options.Add("seed", &seed, "seed of the recipes' random parameters");
   options.Add("workers", &workers, "threads, 0: all processors").Range(0, 1024).NotStored();

@@ -27,7 +27,7 @@ struct PlotOptions {
         .NotStored();
     options.Add("x", &x, "curves: column on the abscissa");
     options.Add("columns", &columns, "curves: one panel each; the usual ones when absent");
-    options.Add("smooth", &smooth, "curves: running mean over this part of the rows").Range(0, 1);
+    options.Add("smooth", &smooth, "curves: smooth over this part of the rows").Range(0, 1);
     options.Add("tolerance", &tolerance, "bars: which tolerance, rad").Range(0, 3.15);
     options.Add("color", &color, "tsne: colour by").Choices({"cluster", "category", "expert"});
   }

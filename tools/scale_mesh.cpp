@@ -31,10 +31,11 @@ void Print(const TriMesh& source, const ObjectMesh& object) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Options options("scale_mesh",
-                  "Makes one closed shell of a mesh file, sizes and centres it, and computes volume, "
-                  "centre of mass and inertia.",
-                  "scale_mesh --mesh=meshes/builtin/airplane/airliner.ply --out=mesh.h5");
+  Options options(
+      "scale_mesh",
+      "Makes one closed shell of a mesh file, sizes and centres it, and computes volume, "
+      "centre of mass and inertia.",
+      "scale_mesh --mesh=meshes/builtin/airplane/airliner.ply --out=mesh.h5");
   std::string mesh_path, out, name, category, export_path;
   ScaleOptions scale;
   options.Add("mesh", &mesh_path, "mesh file: obj, stl, ply, off, dae, fbx, gltf, glb").Required();

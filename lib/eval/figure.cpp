@@ -22,7 +22,7 @@ constexpr double kPngDotsPerInch = 180;
 
 // Both formats from one script. The fonts keep their size in points whatever the format.
 std::string FullScript(const std::string& name, const Figure& figure) {
-  const double scale = kPngDotsPerInch / 72;
+  const double scale = kPngDotsPerInch / 96;  // gnuplot's PNG terminal counts 96 dots to the inch
   return fmt::format(
       "# Restyle freely, then run: gnuplot {0}.gp\n"
       "if (!exists(\"out\")) out = \"{0}\"\n"
@@ -37,6 +37,7 @@ std::string FullScript(const std::string& name, const Figure& figure) {
       "fontscale 1 background \"white\"\n"
       "}}\n"
       "set output out.\".\".format\n"
+      "set pointintervalbox 0\nset key reverse Left\n"
       "{6}"
       "unset output\n"
       "}}\n",

@@ -23,37 +23,59 @@ double Outside(const Box& b, double width, double height) {
   return 2 * (u * b.half_height + v * b.half_width);
 }
 
+constexpr int kDirections = 16;
+constexpr int kRings = 12;
+constexpr double kRingStep = 0.22;
+// Costs against the distance from the point, in the same unit.
+constexpr double kOverlapCost = 1e3;  // per area
+constexpr double kDotCost = 0.03;     // per dot
+
+double Cost(const Box& box, double gap, const std::vector<Box>& taken, const LabelCanvas& canvas) {
+  double cost = gap + kOverlapCost * Outside(box, canvas.width, canvas.height);
+  for (const Box& other : taken) cost += kOverlapCost * Overlap(box, other);
+  for (std::size_t k = 0; k + 1 < canvas.dots.size(); k += 2)
+    if (std::abs(canvas.dots[k] - box.x) < box.half_width &&
+        std::abs(canvas.dots[k + 1] - box.y) < box.half_height)
+      cost += kDotCost;
+  return cost;
+}
+
+// Where the line from (x, y) to the middle of the box enters it.
+PlacedLabel LabelAt(const Box& box, double x, double y, double gap, double marker_radius) {
+  const double dx = box.x - x, dy = box.y - y;
+  const double inside = std::min(box.half_width / std::max(std::abs(dx), 1e-12),
+                                 box.half_height / std::max(std::abs(dy), 1e-12));
+  const double reach = std::max(0.0, 1 - inside);
+  return {box.x, box.y, x + reach * dx, y + reach * dy, gap > marker_radius + kRingStep};
+}
+
 }  // namespace
 
-std::vector<PlacedLabel> PlaceLabels(const std::vector<double>& x, const std::vector<double>& y,
-                                     const std::vector<double>& text_width, double text_height,
-                                     double marker_radius, double width, double height) {
-  constexpr int kDirections = 16;
-  constexpr int kRings = 12;
-  constexpr double kOverlapCost = 1e3;  // per square centimetre, against the distance in centimetres
+std::vector<PlacedLabel> PlaceLabels(const std::vector<LabelRequest>& requests,
+                                     const LabelCanvas& canvas) {
   std::vector<Box> taken;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    taken.push_back({x[i], y[i], marker_radius, marker_radius});
+  for (const LabelRequest& r : requests)
+    taken.push_back({r.x, r.y, canvas.marker_radius, canvas.marker_radius});
   std::vector<PlacedLabel> labels;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    Box best{x[i], y[i], text_width[i] / 2, text_height / 2};
-    double least = HUGE_VAL;
+  for (const LabelRequest& r : requests) {
+    Box best{r.x, r.y, r.width / 2, canvas.text_height / 2};
+    double least = HUGE_VAL, best_gap = 0;
     for (int ring = 0; ring < kRings; ++ring)
       for (int k = 0; k < kDirections; ++k) {
         const double angle = 2 * M_PI * k / kDirections;
-        const double gap = marker_radius + 0.04 + 0.22 * ring;
+        const double gap = canvas.marker_radius + 0.03 + kRingStep * ring;
         Box box = best;
-        box.x = x[i] + std::cos(angle) * (gap + text_width[i] / 2);
-        box.y = y[i] + std::sin(angle) * (gap + text_height / 2);
-        double cost = gap + kOverlapCost * Outside(box, width, height);
-        for (const Box& other : taken) cost += kOverlapCost * Overlap(box, other);
+        box.x = r.x + std::cos(angle) * (gap + box.half_width);
+        box.y = r.y + std::sin(angle) * (gap + box.half_height);
+        const double cost = Cost(box, gap, taken, canvas);
         if (cost < least - 1e-12) {
           least = cost;
           best = box;
+          best_gap = gap;
         }
       }
     taken.push_back(best);
-    labels.push_back({best.x, best.y});
+    labels.push_back(LabelAt(best, r.x, r.y, best_gap, canvas.marker_radius));
   }
   return labels;
 }

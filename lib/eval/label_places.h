@@ -1,19 +1,31 @@
 // Places for labels beside their points, so that no label hides another or a marker.
 #pragma once
 
-#include <string>
 #include <vector>
 
 namespace dexremoe {
 
-struct PlacedLabel {
-  double x = 0, y = 0;  // middle of the text
+struct LabelRequest {
+  double x = 0, y = 0;   // the point
+  double width = 0;      // of the text
 };
 
-// Points and text sizes in the same unit (centimetres on paper). Greedy: the labels are placed in
-// turn at the free candidate nearest to their point; crowded ones move further out.
-std::vector<PlacedLabel> PlaceLabels(const std::vector<double>& x, const std::vector<double>& y,
-                                     const std::vector<double>& text_width, double text_height,
-                                     double marker_radius, double width, double height);
+struct PlacedLabel {
+  double x = 0, y = 0;          // middle of the text
+  double end_x = 0, end_y = 0;  // where a line from the point meets the text's box
+  bool far = false;             // the text is not beside its point: draw that line
+};
+
+struct LabelCanvas {
+  double width = 0, height = 0;
+  double text_height = 0;
+  double marker_radius = 0;     // of the labelled points
+  std::vector<double> dots;     // x, y of small points better left free
+};
+
+// All lengths in the same unit (centimetres on paper). Greedy: each label takes the place nearest
+// to its point that hides no marker and no earlier label, stays on the canvas and covers few dots.
+std::vector<PlacedLabel> PlaceLabels(const std::vector<LabelRequest>& requests,
+                                     const LabelCanvas& canvas);
 
 }  // namespace dexremoe

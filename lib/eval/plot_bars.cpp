@@ -108,14 +108,14 @@ Figure BarsFigure(const std::vector<BarMethod>& methods, double tolerance) {
   figure.width = bars ? std::max(12.0, 3.0 + 0.35 * static_cast<double>(order.size() * methods.size()) +
                                            0.4 * static_cast<double>(order.size()))
                       : 18;
-  figure.height = 8.5;
+  figure.height = 7.5;
   figure.data = BarData(methods, tolerance, order);
   figure.script = fmt::format(
       "set key outside top center horizontal samplen 1.5\n"
       "set border 3 lw 0.7\nset grid ytics lc rgb \"#D8D8D8\" lw 0.5 lt 1\n"
       "set ytics nomirror out scale 0.5\nset errorbars small\n"
       "set boxwidth {:.4f}\nset xrange [-0.7:{}]\nset yrange [0:*]\n"
-      "set ylabel \"successes per episode (tolerance {} rad)\"\n",
+      "set ylabel \"successes per episode at {} rad\"\n",
       0.92 * kGroupWidth / static_cast<double>(methods.size()),
       static_cast<double>(order.size()) - 0.3, tolerance);
   figure.script += ObjectTics(methods, order) + PlotLines(methods, bars) + "reset\n";

@@ -35,21 +35,28 @@ Axis AxisOf(const std::string& column) {
   return {column.c_str(), column.c_str(), 1, false};
 }
 
-// Centred running mean over finite values; `half` rows to either side, fewer at the ends.
-std::vector<double> Smoothed(const std::vector<double>& y, int half) {
-  const int n = static_cast<int>(y.size());
-  std::vector<double> out(y.size(), NAN);
-  for (int i = 0; i < n; ++i) {
-    const int reach = std::min({half, i, n - 1 - i});
-    double sum = 0;
-    int count = 0;
-    for (int j = i - reach; j <= i + reach; ++j) {
-      if (!std::isfinite(y[j])) continue;
-      sum += y[j];
-      ++count;
-    }
-    if (count > 0) out[i] = sum / count;
+// Straight line fitted to the finite values within `half` rows to either side, at its middle row.
+// Inside the curve that is the running mean; at the ends it follows the slope instead of lagging.
+double LocalFit(const std::vector<double>& y, int i, int half) {
+  double n = 0, st = 0, stt = 0, sy = 0, sty = 0;
+  const int end = std::min(static_cast<int>(y.size()), i + half + 1);
+  for (int j = std::max(0, i - half); j < end; ++j) {
+    if (!std::isfinite(y[j])) continue;
+    const double t = j - i;
+    n += 1;
+    st += t;
+    stt += t * t;
+    sy += y[j];
+    sty += t * y[j];
   }
+  const double determinant = n * stt - st * st;
+  if (n == 0) return NAN;
+  return determinant > 0 ? (stt * sy - st * sty) / determinant : sy / n;
+}
+
+std::vector<double> Smoothed(const std::vector<double>& y, int half) {
+  std::vector<double> out(y.size());
+  for (std::size_t i = 0; i < y.size(); ++i) out[i] = LocalFit(y, static_cast<int>(i), half);
   return out;
 }
 
@@ -98,11 +105,11 @@ std::string PanelScript(const std::string& column, std::size_t panel, std::size_
                                    GnuplotQuoted(axis.label), axis.log ? "set" : "unset",
                                    axis.log ? "%.0e" : "%g");
   for (std::size_t r = 0; r < runs; ++r)
-    script += fmt::format("{}data index {} using 1:{} with lines lw 0.6 lc rgb \"{}\"",
+    script += fmt::format("{}data index {} using 1:{} with lines lw 0.5 lc rgb \"{}\"",
                           r > 0 ? ", \\\n  " : "", r, 2 * panel + 2,
                           PaletteColor(static_cast<int>(r), 0xB0));
   for (std::size_t r = 0; r < runs; ++r)
-    script += fmt::format(", \\\n  data index {} using 1:{} with lines lw 1.8 lc rgb \"{}\"", r,
+    script += fmt::format(", \\\n  data index {} using 1:{} with lines lw 1.6 lc rgb \"{}\"", r,
                           2 * panel + 3, PaletteColor(static_cast<int>(r)));
   return script + "\n";
 }
@@ -113,7 +120,7 @@ std::string LegendScript(const std::vector<Curve>& curves) {
       "unset title\nunset xlabel\nunset border\nunset tics\nunset grid\nunset logscale\n"
       "set margins screen 0,0,0,0\nset lmargin at screen 0\nset rmargin at screen 1\n"
       "set bmargin at screen 0\nset tmargin at screen 1\n"
-      "set key at screen 0.5,screen 0.995 center top horizontal samplen 2 width 2\n"
+      "set key at screen 0.5,screen 0.995 center top horizontal samplen 2 width 1\n"
       "set xrange [0:1]\nset yrange [0:1]\nplot ";
   for (std::size_t r = 0; r < curves.size(); ++r)
     script += fmt::format("{}NaN with lines lw 2.5 lc rgb \"{}\" title {}", r > 0 ? ", " : "",
@@ -132,9 +139,9 @@ Figure CurvesFigure(const std::vector<Curve>& curves, const std::string& x,
   const std::size_t down = (columns.size() + across - 1) / across;
   Figure figure;
   figure.width = 6.3 * static_cast<double>(across);
-  figure.height = 5.0 * static_cast<double>(down) + 0.9;
+  figure.height = 4.9 * static_cast<double>(down) + 0.7;
   figure.data = CurveData(curves, x, columns, smooth);
-  const double top = 1 - 1.5 / figure.height, bottom = 1.15 / figure.height;
+  const double top = 1 - 1.35 / figure.height, bottom = 1.0 / figure.height;
   figure.script = fmt::format(
       "set multiplot layout {},{} margins {:.4f},{:.4f},{:.4f},{:.4f} spacing "
       "{:.4f},{:.4f}\n"

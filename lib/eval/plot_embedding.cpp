@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t kMostNames = 30;  // objects; beyond that they are numbered
 constexpr double kMap = 12.5;           // cm, side of the map
 constexpr double kMarkerRadius = 0.1;   // cm
+constexpr double kLetterWidth = 0.142;  // cm, of a label
 
 // The group of every object, and what each group is called.
 struct Groups {
@@ -77,10 +78,12 @@ std::string EmbeddingData(const Embedding& map, const Groups& groups, const Fram
   data += "\n\n# x y text\n";
   for (std::size_t o = 0; o < labels.size(); ++o)
     data += fmt::format("{:.4f} {:.4f} {}\n", labels[o].x, labels[o].y, GnuplotQuoted(text[o]));
-  data += "\n\n# x y dx dy\n";
+  data += "\n\n# x y dx dy\nNaN NaN NaN NaN\n";
   for (std::size_t o = 0; o < labels.size(); ++o) {
+    if (!labels[o].far) continue;
     const double x = frame.X(map.objects[o].x), y = frame.Y(map.objects[o].y);
-    data += fmt::format("{:.4f} {:.4f} {:.4f} {:.4f}\n", x, y, labels[o].x - x, labels[o].y - y);
+    data += fmt::format("{:.4f} {:.4f} {:.4f} {:.4f}\n", x, y, labels[o].end_x - x,
+                        labels[o].end_y - y);
   }
   return data;
 }
@@ -104,6 +107,16 @@ std::string PlotLines(const Groups& groups) {
          "\"#202020\" notitle\n";
 }
 
+// Two lines below the map, as a gnuplot string.
+std::string CaptionOf(const Embedding& map) {
+  return fmt::format(
+      "\"t-SNE of gate weights (log ratios): {} rows of {} objects, perplexity {:.3g}, KL {:.3f}\\n"
+      "10-neighbour overlap {:.2f}, trustworthiness {:.3f}; {} clusters by k-means, silhouette "
+      "{:.2f}\"",
+      map.row_object.size(), map.objects.size(), map.perplexity, map.kl, map.neighbour_overlap,
+      map.trustworthiness, map.clusters, map.silhouette);
+}
+
 }  // namespace
 
 Figure EmbeddingFigure(const Embedding& map, const std::string& color) {
@@ -111,35 +124,33 @@ Figure EmbeddingFigure(const Embedding& map, const std::string& color) {
   const Frame frame(map.position);
   const bool names = map.objects.size() <= kMostNames;
   std::vector<std::string> text;
-  std::vector<double> x, y, width;
+  std::vector<LabelRequest> requests;
   for (std::size_t o = 0; o < map.objects.size(); ++o) {
     text.push_back(names ? map.objects[o].name : fmt::format("{}", o));
-    x.push_back(frame.X(map.objects[o].x));
-    y.push_back(frame.Y(map.objects[o].y));
-    width.push_back(0.05 + 0.145 * static_cast<double>(text.back().size()));  // 6.5 pt letters
+    requests.push_back({frame.X(map.objects[o].x), frame.Y(map.objects[o].y),
+                        0.04 + kLetterWidth * static_cast<double>(text.back().size())});
   }
-  const auto labels = PlaceLabels(x, y, width, 0.27, kMarkerRadius, kMap, kMap);
+  LabelCanvas canvas{kMap, kMap, 0.27, kMarkerRadius, {}};
+  for (std::size_t k = 0; k + 1 < map.position.size(); k += 2)
+    canvas.dots.insert(canvas.dots.end(),
+                       {frame.X(map.position[k]), frame.Y(map.position[k + 1])});
+  const auto labels = PlaceLabels(requests, canvas);
   Figure figure;
   figure.width = kMap + 0.4;
-  figure.height = kMap + 1.6;
+  figure.height = kMap + 1.9;
   figure.data = EmbeddingData(map, groups, frame, text, labels);
-  const double bottom = 0.7 / figure.height, top = (0.7 + kMap) / figure.height;
+  const double bottom = 1.0 / figure.height, top = (1.0 + kMap) / figure.height;
   figure.script = fmt::format(
       "set lmargin at screen {0:.4f}\nset rmargin at screen {1:.4f}\n"
       "set bmargin at screen {2:.4f}\nset tmargin at screen {3:.4f}\n"
       "set xrange [0:{4}]\nset yrange [0:{4}]\nunset tics\nset border 15 lw 0.6 lc rgb \"#A0A0A0\"\n"
-      "set style textbox opaque noborder margins 0.3,0.3 fillcolor rgb \"#60FFFFFF\"\n"
+      "set style textbox opaque noborder margins 0.3,0.3 fillcolor rgb \"#50FFFFFF\"\n"
       "set key at screen 0.5,screen {5:.4f} center center horizontal samplen 0.6 maxcols 4\n"
-      "set label 1 {6} at screen 0.5,screen {7:.4f} center font \"DejaVu Sans,7\" textcolor rgb "
+      "set label 1 {6} at screen 0.5,screen {7:.4f} center noenhanced font \"DejaVu Sans,7\" textcolor rgb "
       "\"#404040\"\n",
       0.2 / figure.width, 1 - 0.2 / figure.width, bottom, top, kMap,
       (top + 1) / 2,
-      GnuplotQuoted(fmt::format(
-          "t-SNE of gate weights (log ratios), {} rows of {} objects; perplexity {:.3g}, KL {:.3f}; "
-          "10-neighbour overlap {:.2f}, trustworthiness {:.3f}",
-          map.row_object.size(), map.objects.size(), map.perplexity, map.kl, map.neighbour_overlap,
-          map.trustworthiness)),
-      bottom / 2);
+      CaptionOf(map), 0.62 * bottom);
   figure.script += PlotLines(groups) + "reset\n";
   return figure;
 }

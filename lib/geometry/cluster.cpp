@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <climits>
+#include <cmath>
 #include <cstdint>
+#include <limits>
+#include <numbers>
 #include <optional>
 #include <unordered_map>
 
@@ -58,72 +61,123 @@ Points ClusterPoints(const VoxelSolid& solid, const std::vector<int>& voxels, in
   return points;
 }
 
+// Directions in which the extreme points of a layer are kept while planes are compared: the axes
+// and diagonals of the grid and a Fibonacci sphere.
+const Points& Directions() {
+  static const Points directions = [] {
+    Points result;
+    for (int code = 0; code < 27; ++code)
+      if (code != 13)
+        result.push_back(
+            Eigen::Vector3d(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).normalized());
+    constexpr int kSpread = 70;
+    for (int i = 0; i < kSpread; ++i) {
+      const double z = 1 - (2 * i + 1.0) / kSpread, r = std::sqrt(1 - z * z);
+      const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
+      result.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
+    }
+    return result;
+  }();
+  return directions;
+}
 
-// Extreme points of each layer of voxels along `axis`; hulls of halves are built from these.
-struct Layers {
-  int first = 0;  // cell index of the first layer
-  std::vector<Points> points;
-  std::vector<double> solid;  // m^3
+// The extreme point of a set in each direction.
+struct Extremes {
+  Points points = Points(Directions().size());
+  std::vector<double> reach = std::vector<double>(Directions().size(), -INFINITY);
+
+  void Add(const Eigen::Vector3d& p) {
+    for (std::size_t d = 0; d < reach.size(); ++d) {
+      const double along = Directions()[d].dot(p);
+      if (along <= reach[d]) continue;
+      reach[d] = along;
+      points[d] = p;
+    }
+  }
+  void Add(const Extremes& other) {
+    for (std::size_t d = 0; d < reach.size(); ++d)
+      if (other.reach[d] > reach[d]) {
+        reach[d] = other.reach[d];
+        points[d] = other.points[d];
+      }
+  }
+  double HullVolume() const {
+    Points distinct = points;
+    std::sort(distinct.begin(), distinct.end(), [](const auto& p, const auto& q) {
+      return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+    });
+    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+    const auto hull = SummariseHull(distinct);
+    return hull ? hull->volume : 0;
+  }
 };
 
-Layers LayersAlong(const VoxelSolid& solid, const Cluster& cluster, int axis) {
-  std::vector<std::vector<int>> members;
-  Layers layers;
-  int low = INT_MAX, high = INT_MIN;
-  for (const int i : cluster.voxels) {
-    low = std::min(low, solid.voxels[i].cell[axis]);
-    high = std::max(high, solid.voxels[i].cell[axis]);
+// A cluster seen along one axis: what lies below and from each layer boundary on.
+class Profile {
+ public:
+  Profile(const VoxelSolid& solid, const Cluster& cluster, int axis) {
+    int low = INT_MAX, high = INT_MIN;
+    for (const int i : cluster.voxels) {
+      low = std::min(low, solid.voxels[i].cell[axis]);
+      high = std::max(high, solid.voxels[i].cell[axis]);
+    }
+    first_ = low;
+    std::vector<std::vector<int>> members(high - low + 1);
+    for (const int i : cluster.voxels) members[solid.voxels[i].cell[axis] - low].push_back(i);
+    for (const std::vector<int>& layer : members) {
+      Extremes extremes;
+      for (const Eigen::Vector3d& p : ClusterPoints(solid, layer, axis, true)) extremes.Add(p);
+      below_.push_back(extremes);
+      above_.push_back(std::move(extremes));
+      solid_below_.push_back(0);
+      for (const int i : layer) solid_below_.back() += solid.voxels[i].volume;
+    }
+    for (int k = 1; k < layers(); ++k) {
+      below_[k].Add(below_[k - 1]);
+      solid_below_[k] += solid_below_[k - 1];
+      above_[layers() - 1 - k].Add(above_[layers() - k]);
+    }
   }
-  layers.first = low;
-  members.resize(high - low + 1);
-  layers.solid.resize(members.size(), 0);
-  for (const int i : cluster.voxels) {
-    members[solid.voxels[i].cell[axis] - low].push_back(i);
-    layers.solid[solid.voxels[i].cell[axis] - low] += solid.voxels[i].volume;
-  }
-  for (const std::vector<int>& layer : members) {
-    Points points = ClusterPoints(solid, layer, axis, true);
-    std::optional<HullSummary> hull = SummariseHull(points);
-    layers.points.push_back(hull ? std::move(hull->vertices) : std::move(points));
-  }
-  return layers;
-}
+  int layers() const { return static_cast<int>(below_.size()); }
+  int first() const { return first_; }
 
-// Hull volumes of the layers from one end up to each, grown layer by layer.
-std::vector<double> GrowingHulls(const Layers& layers, bool from_high) {
-  const std::size_t n = layers.points.size();
-  std::vector<double> volumes(n);
-  Points points;
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t layer = from_high ? n - 1 - k : k;
-    points.insert(points.end(), layers.points[layer].begin(), layers.points[layer].end());
-    std::optional<HullSummary> hull = SummariseHull(points);
-    volumes[layer] = hull ? hull->volume : 0;
-    if (hull) points = std::move(hull->vertices);
+  // Score of the plane under layer k, 0 < k < layers().
+  double Score(int k, double balance) const {
+    const double low = solid_below_[k - 1], all = solid_below_.back();
+    return below_[k - 1].HullVolume() + above_[k].HullVolume() - all +
+           balance * std::abs(all - 2 * low);
   }
-  return volumes;
-}
+
+ private:
+  int first_ = 0;                        // cell index of layer 0
+  std::vector<Extremes> below_, above_;  // up to and with, from and with each layer
+  std::vector<double> solid_below_;      // m^3, up to and with each layer
+};
 
 struct Plane {
   int axis = -1;
-  int cell = 0;  // the high side starts with this layer
+  int layer = 0;  // the high side starts with this layer
   double score = INFINITY;
 };
 
-void ConsiderAxis(const VoxelSolid& solid, const Cluster& cluster, int axis, double balance,
-                  Plane& best) {
-  const Layers layers = LayersAlong(solid, cluster, axis);
-  const int n = static_cast<int>(layers.points.size());
-  if (n < 2) return;
-  const std::vector<double> low = GrowingHulls(layers, false), high = GrowingHulls(layers, true);
-  double low_solid = 0;
-  for (int k = 1; k < n; ++k) {
-    low_solid += layers.solid[k - 1];
-    const double high_solid = cluster.solid - low_solid;
-    const double score =
-        low[k - 1] + high[k] - cluster.solid + balance * std::abs(low_solid - high_solid);
-    if (score < best.score) best = {axis, layers.first + k, score};
-  }
+// Every few layers first, then all around the best.
+Plane FindBestPlane(const std::vector<Profile>& profiles, double balance) {
+  Plane best;
+  const auto consider = [&](int axis, int k) {
+    const double score = profiles[axis].Score(k, balance);
+    if (score < best.score) best = {axis, k, score};
+  };
+  const auto stride = [&](int axis) { return std::max(1, profiles[axis].layers() / 12); };
+  for (int axis = 0; axis < 3; ++axis)
+    for (int k = std::min(stride(axis), profiles[axis].layers() - 1);
+         k > 0 && k < profiles[axis].layers(); k += stride(axis))
+      consider(axis, k);
+  if (best.axis < 0) return best;
+  const Plane coarse = best;
+  const int reach = stride(coarse.axis) - 1;
+  for (int k = coarse.layer - reach; k <= coarse.layer + reach; ++k)
+    if (k > 0 && k < profiles[coarse.axis].layers() && k != coarse.layer) consider(coarse.axis, k);
+  return best;
 }
 
 // Groups of voxels that touch by a face, an edge or a corner.
@@ -156,6 +210,12 @@ std::vector<std::vector<int>> Connected(const VoxelSolid& solid, const std::vect
   return groups;
 }
 
+bool Near(const Cluster& a, const Cluster& b, double reach) {
+  const Box3 box_a = BoundsOf(a.hull), box_b = BoundsOf(b.hull);
+  return (box_a.min.array() <= box_b.max.array() + reach).all() &&
+         (box_b.min.array() <= box_a.max.array() + reach).all();
+}
+
 }  // namespace
 
 TriMesh SolidHull(const Points& points, double thickness) {
@@ -163,8 +223,9 @@ TriMesh SolidHull(const Points& points, double thickness) {
   Points padded;
   for (const Eigen::Vector3d& p : points)
     for (int corner = 0; corner < 8; ++corner)
-      padded.push_back(p + thickness / 2 * Eigen::Vector3d(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1,
-                                                           corner & 4 ? 1 : -1));
+      padded.push_back(
+          p + thickness / 2 *
+                  Eigen::Vector3d(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
   auto hull = ConvexHull(padded);
   DEX_CHECK(hull.has_value());
   return *hull;
@@ -175,19 +236,20 @@ Cluster MakeCluster(const VoxelSolid& solid, std::vector<int> voxels) {
   Cluster cluster;
   cluster.voxels = std::move(voxels);
   for (const int i : cluster.voxels) cluster.solid += solid.voxels[i].volume;
-  cluster.hull =
-      SolidHull(ClusterPoints(solid, cluster.voxels, 2, false), solid.spacing / 10);
+  cluster.hull = SolidHull(ClusterPoints(solid, cluster.voxels, 2, false), solid.spacing / 10);
   cluster.hull_volume = MassPropertiesOf(cluster.hull).volume;
   return cluster;
 }
 
 std::vector<Cluster> CutBest(const VoxelSolid& solid, const Cluster& cluster, double balance) {
-  Plane plane;
-  for (int axis = 0; axis < 3; ++axis) ConsiderAxis(solid, cluster, axis, balance, plane);
+  std::vector<Profile> profiles;
+  for (int axis = 0; axis < 3; ++axis) profiles.emplace_back(solid, cluster, axis);
+  const Plane plane = FindBestPlane(profiles, balance);
   if (plane.axis < 0) return {cluster};
+  const int first_high = profiles[plane.axis].first() + plane.layer;
   std::array<std::vector<int>, 2> sides;
   for (const int i : cluster.voxels)
-    sides[solid.voxels[i].cell[plane.axis] >= plane.cell].push_back(i);
+    sides[solid.voxels[i].cell[plane.axis] >= first_high].push_back(i);
   std::vector<Cluster> pieces;
   for (const std::vector<int>& side : sides)
     for (std::vector<int>& group : Connected(solid, side))
@@ -195,7 +257,7 @@ std::vector<Cluster> CutBest(const VoxelSolid& solid, const Cluster& cluster, do
   return pieces;
 }
 
-void MergeClusters(std::size_t most, double free_volume, double thickness,
+void MergeClusters(std::size_t most, double free_volume, double reach,
                    std::vector<Cluster>& clusters) {
   const auto corners = [](const Cluster& a, const Cluster& b) {
     Points points = a.hull.vertices;
@@ -203,6 +265,7 @@ void MergeClusters(std::size_t most, double free_volume, double thickness,
     return points;
   };
   const auto cost = [&](const Cluster& a, const Cluster& b) {
+    if (!Near(a, b, reach)) return std::numeric_limits<double>::infinity();
     const auto hull = SummariseHull(corners(a, b));
     return (hull ? hull->volume : 0) - a.hull_volume - b.hull_volume;
   };
@@ -215,7 +278,7 @@ void MergeClusters(std::size_t most, double free_volume, double thickness,
       for (std::size_t j = 0; j < i; ++j)
         if (costs[i][j] < costs[a][b]) a = i, b = j;
     if (clusters.size() <= most && costs[a][b] > free_volume) break;
-    clusters[b].hull = SolidHull(corners(clusters[a], clusters[b]), thickness);
+    clusters[b].hull = SolidHull(corners(clusters[a], clusters[b]), reach / 10);
     clusters[b].hull_volume = MassPropertiesOf(clusters[b].hull).volume;
     clusters[b].solid += clusters[a].solid;
     clusters[b].voxels.insert(clusters[b].voxels.end(), clusters[a].voxels.begin(),

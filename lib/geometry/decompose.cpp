@@ -20,8 +20,8 @@ constexpr double kNegligible = 0.05;
 
 TriMesh Closed(const TriMesh& mesh, const std::string& label) {
   const Topology topology = TopologyOf(mesh);
-  const bool usable = topology.open_edges == 0 && topology.flipped_edges == 0 &&
-                      MassPropertiesOf(mesh).volume > 0;
+  const bool usable =
+      topology.open_edges == 0 && topology.flipped_edges == 0 && MassPropertiesOf(mesh).volume > 0;
   return usable ? mesh : MakeClosedShell(mesh, {}, label).mesh;
 }
 
@@ -30,10 +30,9 @@ std::vector<Cluster> CutApart(const VoxelSolid& solid, const DecomposeOptions& o
   std::vector<int> all(solid.voxels.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   std::vector<Cluster> clusters = {MakeCluster(solid, std::move(all))};
-  const std::size_t most =
-      options.parts == 1
-          ? 1
-          : std::clamp(kClustersPerPart * options.parts, kFewestClusters, kMostClusters);
+  const std::size_t most = options.parts == 1 ? 1
+                                              : std::clamp(kClustersPerPart * options.parts,
+                                                           kFewestClusters, kMostClusters);
   const double allowed = options.volume_error * solid.volume;
   std::vector<Cluster> settled;  // cannot be cut further
   while (!clusters.empty() && clusters.size() + settled.size() < most) {
@@ -66,8 +65,7 @@ void DecomposeOptions::Register(Options& options) {
       .Range(0, 1);
   options.Add("decompose.hull_vertices", &hull_vertices, "vertices of a part, at most")
       .Range(4, 1024);
-  options
-      .Add("decompose.balance", &balance, "weight of unequal halves against concavity in a cut")
+  options.Add("decompose.balance", &balance, "weight of unequal halves against concavity in a cut")
       .Range(0, 10);
 }
 
@@ -77,9 +75,8 @@ ConvexParts DecomposeConvex(const TriMesh& mesh, const DecomposeOptions& options
   const VoxelSolid solid = Voxelise(Closed(mesh, label), options.resolution);
   if (!(solid.volume > 0)) Fail("{}: expected a mesh that encloses a volume, found none", label);
   std::vector<Cluster> clusters = CutApart(solid, options);
-  const double thickness = solid.spacing / 10;
   MergeClusters(static_cast<std::size_t>(options.parts),
-                kNegligible * options.volume_error * solid.volume, thickness, clusters);
+                kNegligible * options.volume_error * solid.volume, solid.spacing, clusters);
   ConvexParts parts;
   for (const Cluster& cluster : clusters) {
     auto limited = ConvexHull(cluster.hull.vertices, {options.hull_vertices, 0});

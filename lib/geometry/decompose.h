@@ -12,11 +12,11 @@ namespace dexremoe {
 // NOTE(paper): the paper names V-HACD and none of its settings; 16 parts follow what the objects'
 // details need, the volume error is V-HACD's default.
 struct DecomposeOptions {
-  int parts = 16;              // at most
-  int resolution = 60000;      // voxels in the bounding box
-  double volume_error = 0.01;  // summed hull volume may exceed the solid by this share
-  int hull_vertices = 32;      // per part, at most
-  double balance = 0.05;       // weight of unequal halves against concavity (V-HACD's alpha)
+  int parts = 16;                   // at most
+  int resolution = 60000;           // voxels in the bounding box
+  double volume_error = 0.01;       // summed hull volume may exceed the solid by this share
+  int hull_vertices = 32;           // per part, at most
+  double balance = 0.05;            // weight of unequal halves against concavity (V-HACD's alpha)
   void Register(Options& options);  // section "decompose"
 };
 

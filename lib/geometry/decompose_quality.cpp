@@ -81,7 +81,8 @@ class UnionSurface {
   static double AreaOf(const TriMesh& mesh) {
     double area = 0;
     for (const auto& [a, b, c] : mesh.triangles)
-      area += (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
+      area +=
+          (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
     return area;
   }
   bool Buried(const Eigen::Vector3d& p, std::size_t own) const {

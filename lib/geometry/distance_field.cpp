@@ -89,8 +89,7 @@ double DistanceGrid::Sample(const Eigen::Vector3d& p) const {
   double sum = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
-    const double weight =
-        (dx ? t[0] : 1 - t[0]) * (dy ? t[1] : 1 - t[1]) * (dz ? t[2] : 1 - t[2]);
+    const double weight = (dx ? t[0] : 1 - t[0]) * (dy ? t[1] : 1 - t[1]) * (dz ? t[2] : 1 - t[2]);
     sum += weight * values[Index(cell[0] + dx, cell[1] + dy, cell[2] + dz)];
   }
   return sum;

@@ -114,8 +114,7 @@ bool IsClosedSphere(const TriMesh& mesh) {
     }
   std::sort(forward.begin(), forward.end());
   std::sort(backward.begin(), backward.end());
-  return forward == backward &&
-         std::adjacent_find(forward.begin(), forward.end()) == forward.end();
+  return forward == backward && std::adjacent_find(forward.begin(), forward.end()) == forward.end();
 }
 
 std::optional<TriMesh> FullHull(const Points& points) {

@@ -1,6 +1,5 @@
 #include "geometry/mesh.h"
 
-
 namespace dexremoe {
 
 Box3 BoundsOf(const TriMesh& mesh) {
@@ -16,8 +15,8 @@ MassProperties MassPropertiesOf(const TriMesh& mesh) {
   // cancel badly when the mesh is far from the origin.
   const Eigen::Vector3d apex = BoundsOf(mesh).Center();
   double volume = 0;
-  Eigen::Vector3d first = Eigen::Vector3d::Zero();    // integral of x
-  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();   // integral of x x^T
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();   // integral of x
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();  // integral of x x^T
   for (const auto& triangle : mesh.triangles) {
     const Eigen::Vector3d a = mesh.vertices[triangle[0]] - apex;
     const Eigen::Vector3d b = mesh.vertices[triangle[1]] - apex;

@@ -9,8 +9,8 @@
 namespace dexremoe {
 
 struct TriMesh {
-  std::vector<Eigen::Vector3d> vertices;         // m
-  std::vector<std::array<int, 3>> triangles;     // counter-clockwise from outside
+  std::vector<Eigen::Vector3d> vertices;      // m
+  std::vector<std::array<int, 3>> triangles;  // counter-clockwise from outside
 };
 
 struct Box3 {
@@ -29,9 +29,9 @@ Box3 BoundsOf(const TriMesh& mesh);
 // Volume integrals of a closed mesh of unit density (divergence theorem; Eberly, "Polyhedral Mass
 // Properties", 2002).
 struct MassProperties {
-  double volume = 0;                                     // m^3
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();      // m
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();     // about the centre; m^5 (density 1)
+  double volume = 0;                                  // m^3
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();   // m
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  // about the centre; m^5 (density 1)
 };
 MassProperties MassPropertiesOf(const TriMesh& mesh);
 

@@ -7,11 +7,11 @@
 
 namespace dexremoe {
 
-// Reads OBJ, STL, PLY, OFF, DAE, FBX, glTF or GLB. All meshes of the scene are joined with their node
-// transforms applied (mirroring transforms keep the winding outward), polygons are split into
+// Reads OBJ, STL, PLY, OFF, DAE, FBX, glTF or GLB. All meshes of the scene are joined with their
+// node transforms applied (mirroring transforms keep the winding outward), polygons are split into
 // triangles, points and lines are left out, and vertices at exactly equal positions are merged.
-// Units are the file's own. Throws Error (one line, naming the file) for a missing, empty, truncated
-// or unreadable file, vertices that are not finite and files without faces.
+// Units are the file's own. Throws Error (one line, naming the file) for a missing, empty,
+// truncated or unreadable file, vertices that are not finite and files without faces.
 TriMesh LoadMesh(const std::string& path);
 
 // Writes .ply (binary, 32-bit floats), .obj or .stl (binary) by the ending of `path`.

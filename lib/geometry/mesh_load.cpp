@@ -65,7 +65,8 @@ void AppendMesh(const std::string& path, const aiMesh& source, const Eigen::Matr
     const aiVector3D& v = source.mVertices[i];
     const Eigen::Vector3d p = (transform * Eigen::Vector4d(v.x, v.y, v.z, 1)).head<3>();
     if (!p.allFinite())
-      Fail("{}: vertex {}: expected finite coordinates, found ({}, {}, {})", path, i, v.x, v.y, v.z);
+      Fail("{}: vertex {}: expected finite coordinates, found ({}, {}, {})", path, i, v.x, v.y,
+           v.z);
     mesh.vertices.push_back(p);
   }
   for (unsigned i = 0; i < source.mNumFaces; ++i) {

@@ -13,7 +13,8 @@ using Matrix3r = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 void AppendFlat(const TriMesh& mesh, std::vector<double>& vertices,
                 std::vector<std::int32_t>& triangles) {
-  for (const Eigen::Vector3d& v : mesh.vertices) vertices.insert(vertices.end(), v.begin(), v.end());
+  for (const Eigen::Vector3d& v : mesh.vertices)
+    vertices.insert(vertices.end(), v.begin(), v.end());
   for (const auto& t : mesh.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
 }
 
@@ -66,7 +67,8 @@ void WriteObjectMesh(const std::string& path, const ObjectMesh& object,
   file.Write("inertia", std::vector<double>(inertia.data(), inertia.data() + 9), {3, 3},
              {"kg m^2", "row, column", "about O, uniform density"});
   file.Write("source_to_object", std::vector<double>(transform.data(), transform.data() + 16),
-             {4, 4}, {"1", "row, column", "homogeneous transform from the source file's units to O"});
+             {4, 4},
+             {"1", "row, column", "homogeneous transform from the source file's units to O"});
   file.WriteString("name", object.name, {"1", "", "object name"});
   file.WriteString("category", object.category, {"1", "", "object category"});
   file.WriteString("repair", object.repair, {"1", "", "what was done to make one closed shell"});

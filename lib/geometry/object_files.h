@@ -13,13 +13,13 @@ inline constexpr H5Format kPartsFormat = {"dexremoe.parts", 1};
 
 // An object ready for use: closed, scaled, its frame O at the centre of mass.
 struct ObjectMesh {
-  TriMesh mesh;                                               // in O, m
-  double mass = 0;                                            // kg
-  double volume = 0;                                          // m^3
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();          // about O; kg m^2
+  TriMesh mesh;                                       // in O, m
+  double mass = 0;                                    // kg
+  double volume = 0;                                  // m^3
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  // about O; kg m^2
   std::string name;
   std::string category;
-  std::string repair;                                         // what was done to close it
+  std::string repair;                                              // what was done to close it
   Eigen::Matrix4d source_to_object = Eigen::Matrix4d::Identity();  // source file units to O
 };
 

@@ -43,8 +43,8 @@ void FillField(const Field& field, DistanceGrid& grid) {
   for (int z = 0; z < grid.dims[2]; z += kBlock)
     for (int y = 0; y < grid.dims[1]; y += kBlock)
       for (int x = 0; x < grid.dims[0]; x += kBlock) {
-        const double middle = field(grid.Position(x, y, z) + Eigen::Vector3d::Constant(
-                                                                 (kBlock - 1) / 2.0 * grid.spacing));
+        const double middle = field(grid.Position(x, y, z) +
+                                    Eigen::Vector3d::Constant((kBlock - 1) / 2.0 * grid.spacing));
         const std::array<int, 3> end = {std::min(x + kBlock, grid.dims[0]),
                                         std::min(y + kBlock, grid.dims[1]),
                                         std::min(z + kBlock, grid.dims[2])};
@@ -64,12 +64,14 @@ void CheckOneShell(const TriMesh& mesh, const std::string& label) {
   if (count == 1) return;
   std::vector<std::vector<int>> members(count);
   for (std::size_t t = 0; t < shell.size(); ++t) members[shell[t]].push_back(static_cast<int>(t));
-  const auto smallest = std::min_element(members.begin(), members.end(),
-      [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  const auto smallest =
+      std::min_element(members.begin(), members.end(),
+                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
   const TriMesh stray = Submesh(mesh, *smallest);
   const Eigen::Vector3d at = BoundsOf(stray).Center();
   Fail("{}: expected one closed shell, found {}; the smallest is a {} at ({:.2f}, {:.2f}, {:.2f})",
-       label, count, MassPropertiesOf(stray).volume > 0 ? "piece" : "bubble", at.x(), at.y(), at.z());
+       label, count, MassPropertiesOf(stray).volume > 0 ? "piece" : "bubble", at.x(), at.y(),
+       at.z());
 }
 
 }  // namespace

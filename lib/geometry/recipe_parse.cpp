@@ -75,9 +75,15 @@ Field Combined(std::vector<Step> steps) {
     for (const Step& step : steps) {
       const double other = step.field(p);
       switch (step.operation) {
-        case Operation::kAdd: value = SmoothMin(value, other, step.smooth); break;
-        case Operation::kCut: value = -SmoothMin(-value, other, step.smooth); break;
-        case Operation::kKeep: value = -SmoothMin(-value, -other, step.smooth); break;
+        case Operation::kAdd:
+          value = SmoothMin(value, other, step.smooth);
+          break;
+        case Operation::kCut:
+          value = -SmoothMin(-value, other, step.smooth);
+          break;
+        case Operation::kKeep:
+          value = -SmoothMin(-value, -other, step.smooth);
+          break;
       }
     }
     return value;
@@ -130,7 +136,8 @@ class Parser {
     line.Expect('=');
     const double value = line.Expression();
     line.ExpectEnd();
-    if (!std::isfinite(value)) line.place().Fail("{}: expected a finite number, found {}", name, value);
+    if (!std::isfinite(value))
+      line.place().Fail("{}: expected a finite number, found {}", name, value);
     scope_.names[name] = value;
   }
 

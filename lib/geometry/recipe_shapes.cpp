@@ -32,8 +32,8 @@ Field MakeBox(RecipeArgs& args) {
   const Vector3d half = args.Spread("size") / 2;
   const double round = args.Number("round", 0);
   if (!(half.minCoeff() > 0) || round < 0 || round > half.minCoeff())
-    args.place().Fail("box: expected sizes above 0 and round of at most half the smallest, found {}",
-                      round);
+    args.place().Fail(
+        "box: expected sizes above 0 and round of at most half the smallest, found {}", round);
   return [half, round](const Vector3d& p) {
     const Vector3d q = p.cwiseAbs() - half + Vector3d::Constant(round);
     return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0) - round;
@@ -71,24 +71,25 @@ Field MakeCylinder(RecipeArgs& args) {
     args.place().Fail("cylinder: expected length and radii above 'round', found round={}", round);
   const double half = length / 2 - round;
   const Vector2d core = r - Vector2d::Constant(round);
-  return [=, unit = Vector3d(axis / length), middle = Vector3d(from + axis / 2)](
-             const Vector3d& p) {
-    const double y = (p - middle).dot(unit);
-    const Vector2d q(std::sqrt(std::max((p - middle).squaredNorm() - y * y, 0.0)), y);
-    const Vector2d top(core[1], half), side(core[1] - core[0], 2 * half);
-    const Vector2d cap(q.x() - std::min(q.x(), y < 0 ? core[0] : core[1]), std::abs(y) - half);
-    const double t = std::clamp((top - q).dot(side) / side.squaredNorm(), 0.0, 1.0);
-    const Vector2d flank = q - top + t * side;
-    const bool inside = flank.x() < 0 && cap.y() < 0;
-    const double distance = std::sqrt(std::min(cap.squaredNorm(), flank.squaredNorm()));
-    return (inside ? -distance : distance) - round;
-  };
+  return
+      [=, unit = Vector3d(axis / length), middle = Vector3d(from + axis / 2)](const Vector3d& p) {
+        const double y = (p - middle).dot(unit);
+        const Vector2d q(std::sqrt(std::max((p - middle).squaredNorm() - y * y, 0.0)), y);
+        const Vector2d top(core[1], half), side(core[1] - core[0], 2 * half);
+        const Vector2d cap(q.x() - std::min(q.x(), y < 0 ? core[0] : core[1]), std::abs(y) - half);
+        const double t = std::clamp((top - q).dot(side) / side.squaredNorm(), 0.0, 1.0);
+        const Vector2d flank = q - top + t * side;
+        const bool inside = flank.x() < 0 && cap.y() < 0;
+        const double distance = std::sqrt(std::min(cap.squaredNorm(), flank.squaredNorm()));
+        return (inside ? -distance : distance) - round;
+      };
 }
 
 Field MakeTorus(RecipeArgs& args) {
   const Vector2d r = args.Pair("r");
   if (!(r[1] > 0) || !(r[0] > 0)) args.place().Fail("r: expected (ring, tube) above 0");
-  return [r](const Vector3d& p) { return Vector2d(p.head<2>().norm() - r[0], p.z()).norm() - r[1]; };
+  return
+      [r](const Vector3d& p) { return Vector2d(p.head<2>().norm() - r[0], p.z()).norm() - r[1]; };
 }
 
 Field MakePlane(RecipeArgs& args) {
@@ -119,10 +120,10 @@ double SuperellipseDistance(double u, double v, double a, double b, double n) {
 Field MakeShape(const std::string& name, RecipeArgs& args) {
   using Maker = Field (*)(RecipeArgs&);
   static const std::map<std::string, Maker> kMakers = {
-      {"sphere", MakeSphere},     {"ellipsoid", MakeEllipsoid}, {"box", MakeBox},
-      {"capsule", MakeCapsule},   {"cylinder", MakeCylinder},   {"torus", MakeTorus},
-      {"plane", MakePlane},       {"tube", MakeTube},           {"loft", MakeLoft},
-      {"wing", MakeWing},         {"extrude", MakeExtrusion}};
+      {"sphere", MakeSphere},   {"ellipsoid", MakeEllipsoid}, {"box", MakeBox},
+      {"capsule", MakeCapsule}, {"cylinder", MakeCylinder},   {"torus", MakeTorus},
+      {"plane", MakePlane},     {"tube", MakeTube},           {"loft", MakeLoft},
+      {"wing", MakeWing},       {"extrude", MakeExtrusion}};
   const auto found = kMakers.find(name);
   if (found != kMakers.end()) return found->second(args);
   std::string names;

@@ -13,8 +13,8 @@ namespace dexremoe {
 // Negative inside.
 using Field = std::function<double(const Eigen::Vector3d&)>;
 
-// Reads the arguments of shape `name` and returns its field. Throws Error naming file and line for an
-// unknown shape or wrong arguments. Shapes and their arguments are listed in recipes.h.
+// Reads the arguments of shape `name` and returns its field. Throws Error naming file and line for
+// an unknown shape or wrong arguments. Shapes and their arguments are listed in recipes.h.
 Field MakeShape(const std::string& name, RecipeArgs& args);
 
 // Polynomial smooth minimum (Quilez): equals min(a, b) where they differ by more than k.

@@ -101,8 +101,7 @@ double PolygonDistance(const std::vector<Vector2d>& polygon, const Vector2d& p) 
     const Vector2d edge = b - a, from_a = p - a;
     const double t = std::clamp(from_a.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
     squared = std::min(squared, (from_a - t * edge).squaredNorm());
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < a.x() + edge.x() * (p.y() - a.y()) / edge.y())
+    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + edge.x() * (p.y() - a.y()) / edge.y())
       inside = !inside;
   }
   return inside ? -std::sqrt(squared) : std::sqrt(squared);

@@ -10,7 +10,9 @@ namespace dexremoe {
 namespace {
 
 bool IsWordStart(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-bool IsWordPart(char c) { return IsWordStart(c) || std::isdigit(static_cast<unsigned char>(c)) != 0; }
+bool IsWordPart(char c) {
+  return IsWordStart(c) || std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
 
 }  // namespace
 
@@ -204,7 +206,8 @@ double RecipeLine::Factor() {
   const std::string name = Word("a number");
   if (Peek() == '(') return Function(name);
   const auto found = scope_.names.find(name);
-  if (found == scope_.names.end()) place_.Fail("'{}' is not defined; expected 'let {} = ...' above", name, name);
+  if (found == scope_.names.end())
+    place_.Fail("'{}' is not defined; expected 'let {} = ...' above", name, name);
   return found->second;
 }
 

@@ -1,9 +1,10 @@
 // Objects as recipes: a small text language for constructive modelling with signed distances.
 //
-// A recipe is data/recipes/CATEGORY/NAME.recipe. x points forward, y left, z up; units are free, the
-// mesh is scaled afterwards. One statement per line, # starts a comment:
+// A recipe is data/recipes/CATEGORY/NAME.recipe. x points forward, y left, z up; units are free,
+// the mesh is scaled afterwards. One statement per line, # starts a comment:
 //
-//   let NAME = EXPRESSION           numbers, + - * / ( ), uniform(a,b), pick(a,b,...), min, max, sin,
+//   let NAME = EXPRESSION           numbers, + - * / ( ), uniform(a,b), pick(a,b,...), min, max,
+//   sin,
 //                                   cos (degrees), abs, sqrt; the seed decides what is drawn
 //   resolution N                    voxels along the longest side (default 64)
 //   OP SHAPE key=value ...          OP is add, cut or keep (intersect)
@@ -11,8 +12,8 @@
 //
 // Shapes (tuples are written (a,b,c), lists of tuples one after the other):
 //
-//   sphere r=          ellipsoid r=(x,y,z)     box size=(x,y,z) [round=]     torus r=(ring,tube), axis z
-//   capsule from= to= r=a or (a,b)             cylinder from= to= r=a or (a,b) [round=]
+//   sphere r=          ellipsoid r=(x,y,z)     box size=(x,y,z) [round=]     torus r=(ring,tube),
+//   axis z capsule from= to= r=a or (a,b)             cylinder from= to= r=a or (a,b) [round=]
 //   plane normal=      everything behind the plane through the origin
 //   tube points=(x,y,z,r)... [straight=1]      a smooth curve through the points
 //   loft stations=(x,z,width,height)... or (x,z,width,up,down[,power]) [round=]

@@ -14,16 +14,21 @@ namespace {
 struct CubeEdge {
   int from, to;  // corners, `to` one step along the axis
 };
-constexpr std::array<CubeEdge, 12> kEdges = {{{0, 1}, {2, 3}, {4, 5}, {6, 7},
-                                              {0, 2}, {1, 3}, {4, 6}, {5, 7},
-                                              {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
+constexpr std::array<CubeEdge, 12> kEdges = {{{0, 1},
+                                              {2, 3},
+                                              {4, 5},
+                                              {6, 7},
+                                              {0, 2},
+                                              {1, 3},
+                                              {4, 6},
+                                              {5, 7},
+                                              {0, 4},
+                                              {1, 5},
+                                              {2, 6},
+                                              {3, 7}}};
 // Faces -x, +x, -y, +y, -z, +z: corners counter-clockwise seen from outside the cube.
-constexpr std::array<std::array<int, 4>, 6> kFaces = {{{0, 4, 6, 2},
-                                                       {1, 3, 7, 5},
-                                                       {0, 1, 5, 4},
-                                                       {2, 6, 7, 3},
-                                                       {0, 2, 3, 1},
-                                                       {4, 5, 7, 6}}};
+constexpr std::array<std::array<int, 4>, 6> kFaces = {
+    {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
 
 int EdgeBetween(int a, int b) {
   for (int e = 0; e < 12; ++e)
@@ -39,7 +44,8 @@ struct Loops {
 };
 
 // Joins the crossed edges of each face in pairs, then follows the pairs around the cube. On an
-// ambiguous face the inside corners are kept apart, or joined where `joined` (bit per face) says so.
+// ambiguous face the inside corners are kept apart, or joined where `joined` (bit per face) says
+// so.
 Loops FindLoops(unsigned inside, unsigned joined) {
   std::array<std::array<int, 2>, 12> next;
   std::array<int, 12> degree{};
@@ -175,7 +181,8 @@ class Extractor {
     // count as outside whatever their value.
     const double t = a != b ? std::clamp(a / (a - b), 0.02, 0.98) : 0.5;
     const auto u = Node(from), v = Node(to);
-    const Eigen::Vector3d p = grid_.Position(u[0], u[1], u[2]), q = grid_.Position(v[0], v[1], v[2]);
+    const Eigen::Vector3d p = grid_.Position(u[0], u[1], u[2]),
+                          q = grid_.Position(v[0], v[1], v[2]);
     return p + t * (q - p);
   }
 

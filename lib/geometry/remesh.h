@@ -20,7 +20,8 @@ TriMesh ExtractLevelSet(const DistanceGrid& grid, double level);
 void ProjectToField(const std::function<double(const Eigen::Vector3d&)>& field, double step,
                     double reach, TriMesh& mesh);
 
-// `rounds` of Laplacian smoothing within the tangent plane: evens out the triangles, keeps the shape.
+// `rounds` of Laplacian smoothing within the tangent plane: evens out the triangles, keeps the
+// shape.
 void SmoothTangentially(int rounds, TriMesh& mesh);
 
 }  // namespace dexremoe

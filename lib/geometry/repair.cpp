@@ -1,6 +1,7 @@
 #include "geometry/repair.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -11,8 +12,8 @@
 namespace dexremoe {
 namespace {
 
-constexpr int kSamples = 4000;       // points that test whether the surface survived
-constexpr double kOffsetCells = 0.8; // thickening of sheets that would vanish
+constexpr int kSamples = 4000;        // points that test whether the surface survived
+constexpr double kOffsetCells = 0.8;  // thickening of sheets that would vanish
 
 // Sheets modelled from both sides cancel in the winding number. When most of the mesh is such,
 // one side of each is dropped; where a few triangles meet back to back (two solids that touch),
@@ -34,27 +35,32 @@ TriMesh WithoutDoubleSides(const TriMesh& mesh) {
   return result;
 }
 
-// The shell of largest volume; `dropped` gets the number and the volume share of the others.
+// What became of the shells that were not kept.
 struct Dropped {
-  int shells = 0;
-  double volume_share = 0;
+  int pieces = 0;           // separate solids
+  int cavities = 0;         // hollows inside, now filled
+  double volume_share = 0;  // of the pieces
 };
+
+// The shell of largest volume.
 TriMesh LargestShell(const TriMesh& mesh, Dropped& dropped) {
   const std::vector<int> shell = ShellOfTriangles(mesh);
   const int count = shell.empty() ? 0 : *std::max_element(shell.begin(), shell.end()) + 1;
   std::vector<std::vector<int>> members(count);
   for (std::size_t t = 0; t < shell.size(); ++t) members[shell[t]].push_back(static_cast<int>(t));
-  double total = 0, largest = -INFINITY;
+  double total = 0, largest = 0;
   TriMesh best;
+  dropped = {};
   for (const std::vector<int>& triangles : members) {
     TriMesh piece = Submesh(mesh, triangles);
     const double volume = MassPropertiesOf(piece).volume;
+    (volume > 0 ? dropped.pieces : dropped.cavities) += 1;
     total += std::max(volume, 0.0);
     if (volume <= largest) continue;
     largest = volume;
     best = std::move(piece);
   }
-  dropped.shells = std::max(count - 1, 0);
+  dropped.pieces = std::max(dropped.pieces - 1, 0);
   dropped.volume_share = total > 0 ? 1 - largest / total : 0;
   return best;
 }
@@ -69,36 +75,55 @@ double LostSurface(const std::vector<Eigen::Vector3d>& samples, const TriMesh& s
   return static_cast<double>(lost) / static_cast<double>(samples.size());
 }
 
+struct Shell {
+  TriMesh mesh;
+  Dropped dropped;
+  double offset_share = 0;  // thickening over the longest side; 0: none
+};
+
+Shell ExtractShell(const TriMesh& source, int resolution, double lost_surface) {
+  const TriangleBvh bvh(source);
+  DistanceGrid grid = GridAround(BoundsOf(source), resolution, 3);
+  FillSignedDistance(bvh, grid);
+  Shell shell;
+  shell.mesh = LargestShell(ExtractLevelSet(grid, 0), shell.dropped);
+  const double lost = LostSurface(SpreadOverSurface(source, kSamples), shell.mesh, grid.spacing);
+  if (lost > lost_surface) {
+    shell.offset_share = kOffsetCells / resolution;
+    shell.mesh = LargestShell(ExtractLevelSet(grid, kOffsetCells * grid.spacing), shell.dropped);
+  }
+  return shell;
+}
+
+std::string Describe(const Topology& was, const Shell& shell) {
+  std::string text = fmt::format("remeshed: {} shells, {} open edges, {} crowded edges", was.shells,
+                                 was.open_edges, was.crowded_edges);
+  if (shell.offset_share > 0)
+    text += fmt::format("; thickened by {:.2g} % of its length (sheets would have vanished)",
+                        100 * shell.offset_share);
+  const Dropped& dropped = shell.dropped;
+  if (dropped.cavities > 0) text += fmt::format("; filled {} cavities", dropped.cavities);
+  if (dropped.pieces > 0)
+    text += fmt::format("; dropped {} separate pieces, {:.2g} % of the volume", dropped.pieces,
+                        100 * dropped.volume_share);
+  return text;
+}
+
 RepairResult Remesh(const TriMesh& mesh, const Topology& was, const RepairOptions& options,
                     const std::string& label) {
   const TriMesh source = WithConsistentWinding(WithoutDoubleSides(mesh));
-  const TriangleBvh bvh(source);
-  DistanceGrid grid = GridAround(BoundsOf(source), options.resolution, 3);
-  FillSignedDistance(bvh, grid);
-  const std::vector<Eigen::Vector3d> samples = SpreadOverSurface(source, kSamples);
-
-  RepairResult result;
-  Dropped dropped;
-  double offset = 0;
-  result.mesh = LargestShell(ExtractLevelSet(grid, 0), dropped);
-  const double lost = LostSurface(samples, result.mesh, grid.spacing);
-  if (lost > options.lost_surface) {
-    offset = kOffsetCells * grid.spacing;
-    result.mesh = LargestShell(ExtractLevelSet(grid, offset), dropped);
+  Shell shell = ExtractShell(source, options.resolution, options.lost_surface);
+  const auto count = static_cast<double>(shell.mesh.triangles.size());
+  if (count > options.max_triangles) {
+    // The number of triangles goes with the square of the resolution, or a little faster.
+    const double finer = std::sqrt(count / options.max_triangles);
+    const int resolution = std::max(16, static_cast<int>(0.97 * options.resolution / finer));
+    shell = ExtractShell(source, resolution, options.lost_surface);
   }
-  SmoothTangentially(2, result.mesh);
-  if (!(MassPropertiesOf(result.mesh).volume > 0))
+  SmoothTangentially(2, shell.mesh);
+  if (!(MassPropertiesOf(shell.mesh).volume > 0))
     Fail("{}: expected a mesh that encloses a volume, found none after remeshing", label);
-
-  result.text = fmt::format("remeshed: {} shells, {} open edges, {} crowded edges", was.shells,
-                            was.open_edges, was.crowded_edges);
-  if (offset > 0)
-    result.text += fmt::format("; thickened by {:.2g} % of its length (sheets would have vanished)",
-                               100 * offset / BoundsOf(source).Size().maxCoeff());
-  if (dropped.shells > 0)
-    result.text += fmt::format("; dropped {} separate pieces, {:.2g} % of the volume",
-                               dropped.shells, 100 * dropped.volume_share);
-  return result;
+  return {shell.mesh, Describe(was, shell)};
 }
 
 }  // namespace
@@ -106,7 +131,8 @@ RepairResult Remesh(const TriMesh& mesh, const Topology& was, const RepairOption
 RepairResult MakeClosedShell(const TriMesh& mesh, const RepairOptions& options,
                              const std::string& label) {
   const double size = BoundsOf(mesh).Size().maxCoeff();
-  if (!(size > 0)) Fail("{}: expected a mesh with an extent, found all vertices at one place", label);
+  if (!(size > 0))
+    Fail("{}: expected a mesh with an extent, found all vertices at one place", label);
   // 32-bit coordinates of equal points differ by rounding at most.
   const TriMesh welded = Weld(mesh, 1e-6 * size);
   const Topology topology = TopologyOf(welded);

@@ -14,11 +14,11 @@ TriMesh Weld(const TriMesh& mesh, double tolerance);
 
 // What is wrong with a welded mesh. Edges are counted once.
 struct Topology {
-  int shells = 0;               // groups of triangles connected through edges
-  int open_edges = 0;           // one triangle
-  int crowded_edges = 0;        // more than two triangles
-  int flipped_edges = 0;        // two triangles that run the same way
-  int pinched_vertices = 0;     // the triangles around it form more than one fan
+  int shells = 0;            // groups of triangles connected through edges
+  int open_edges = 0;        // one triangle
+  int crowded_edges = 0;     // more than two triangles
+  int flipped_edges = 0;     // two triangles that run the same way
+  int pinched_vertices = 0;  // the triangles around it form more than one fan
   bool ClosedManifold() const {
     return open_edges == 0 && crowded_edges == 0 && flipped_edges == 0 && pinched_vertices == 0;
   }
@@ -36,19 +36,20 @@ TriMesh Submesh(const TriMesh& mesh, const std::vector<int>& triangles);
 TriMesh WithConsistentWinding(const TriMesh& mesh);
 
 struct RepairOptions {
-  int resolution = 80;   // voxels along the longest side of the distance field
+  int resolution = 80;        // voxels along the longest side of the distance field
+  int max_triangles = 30000;  // a finer shell is made again with fewer voxels
   // Largest fraction of the source surface that may lie farther than one voxel outside the new
   // shell before the shell is thickened by an offset (thin sheets would vanish).
   double lost_surface = 0.005;
 };
 
 struct RepairResult {
-  TriMesh mesh;       // one closed manifold shell, positive volume
-  std::string text;   // "closed as it was" or "remeshed: 31 shells, 324 open edges ..."
+  TriMesh mesh;      // one closed manifold shell, positive volume
+  std::string text;  // "closed as it was" or "remeshed: 31 shells, 324 open edges ..."
 };
 
-// Welds, and remeshes through a distance field signed by winding number where welding is not enough.
-// Throws Error (naming `label`) when nothing with a volume is left.
+// Welds, and remeshes through a distance field signed by winding number where welding is not
+// enough. Throws Error (naming `label`) when nothing with a volume is left.
 RepairResult MakeClosedShell(const TriMesh& mesh, const RepairOptions& options,
                              const std::string& label);
 

@@ -13,6 +13,10 @@ void ScaleOptions::Register(Options& options) {
            "voxels along the longest side where a mesh must be remeshed")
       .Range(16, 512);
   options
+      .Add("scale.max_triangles", &repair.max_triangles,
+           "a remeshed shell with more triangles is made again with fewer voxels")
+      .Range(1000, 10000000);
+  options
       .Add("scale.lost_surface", &repair.lost_surface,
            "share of the surface that may vanish before sheets are thickened")
       .Range(0, 1);

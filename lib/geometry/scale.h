@@ -16,7 +16,7 @@ struct ScaleOptions {
   double length = 0.1;  // m
   double scale = 0.8;
   // NOTE(paper): object masses are not given; 80 g is what a printed 80 mm object weighs.
-  double mass = 0.08;   // kg
+  double mass = 0.08;  // kg
   RepairOptions repair;
   void Register(Options& options);  // section "scale"
 };

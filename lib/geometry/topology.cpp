@@ -190,8 +190,7 @@ TriMesh Submesh(const TriMesh& mesh, const std::vector<int>& triangles) {
   for (const int t : triangles) {
     std::array<int, 3> triangle = mesh.triangles[t];
     for (int& index : triangle) {
-      const auto [at, fresh] =
-          renumbered.emplace(index, static_cast<int>(result.vertices.size()));
+      const auto [at, fresh] = renumbered.emplace(index, static_cast<int>(result.vertices.size()));
       if (fresh) result.vertices.push_back(mesh.vertices[index]);
       index = at->second;
     }

@@ -164,7 +164,8 @@ std::vector<Eigen::Vector3d> SpreadOverSurface(const TriMesh& mesh, int count) {
   std::vector<double> up_to;  // summed areas
   double total = 0;
   for (const auto& [a, b, c] : mesh.triangles) {
-    total += (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
+    total +=
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
     up_to.push_back(total);
   }
   std::vector<Eigen::Vector3d> points;
@@ -173,8 +174,8 @@ std::vector<Eigen::Vector3d> SpreadOverSurface(const TriMesh& mesh, int count) {
   double u = 0.5, v = 0.5;
   for (int i = 0; i < count; ++i) {
     const auto at = std::lower_bound(up_to.begin(), up_to.end(), (i + 0.5) / count * total);
-    const auto& [a, b, c] = mesh.triangles[std::min<std::size_t>(at - up_to.begin(),
-                                                                 up_to.size() - 1)];
+    const auto& [a, b, c] =
+        mesh.triangles[std::min<std::size_t>(at - up_to.begin(), up_to.size() - 1)];
     u = std::fmod(u + 1 / kPlastic, 1.0);
     v = std::fmod(v + 1 / (kPlastic * kPlastic), 1.0);
     const double root = std::sqrt(u);

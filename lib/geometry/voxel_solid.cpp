@@ -57,8 +57,7 @@ struct Cut {
 void AddPiece(const Polygon& piece, double floor, Cut& cut) {
   for (std::size_t i = 1; i + 1 < piece.size(); ++i) {
     const Eigen::Vector3d &a = piece[0], &b = piece[i], &c = piece[i + 1];
-    const double area =
-        ((b.x() - a.x()) * (c.y() - a.y()) - (c.x() - a.x()) * (b.y() - a.y())) / 2;
+    const double area = ((b.x() - a.x()) * (c.y() - a.y()) - (c.x() - a.x()) * (b.y() - a.y())) / 2;
     cut.area += area;
     cut.moment += area * ((a.z() + b.z() + c.z()) / 3 - floor);
   }
@@ -98,8 +97,7 @@ class Voxeliser {
     for (int k = 0; k < 3; ++k) {
       // More than a voxel to spare, by a fraction that keeps faces of boxes off the voxels' faces.
       solid_.dims[k] = static_cast<int>(std::ceil(size[k] / solid_.spacing + 1.3));
-      solid_.origin[k] =
-          bounds.Center()[k] - (solid_.dims[k] / 2.0 + 0.0137) * solid_.spacing;
+      solid_.origin[k] = bounds.Center()[k] - (solid_.dims[k] / 2.0 + 0.0137) * solid_.spacing;
     }
     cut_of_cell_.assign(static_cast<std::size_t>(solid_.dims[0]) * solid_.dims[1] * solid_.dims[2],
                         -1);
@@ -124,7 +122,8 @@ class Voxeliser {
 
  private:
   std::size_t Index(const std::array<int, 3>& cell) const {
-    return (static_cast<std::size_t>(cell[2]) * solid_.dims[1] + cell[1]) * solid_.dims[0] + cell[0];
+    return (static_cast<std::size_t>(cell[2]) * solid_.dims[1] + cell[1]) * solid_.dims[0] +
+           cell[0];
   }
   Cut& CutAt(const std::array<int, 3>& cell) {
     for (int k = 0; k < 3; ++k) {

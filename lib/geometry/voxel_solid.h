@@ -23,8 +23,8 @@ struct VoxelSolid {
   double spacing = 0;                                // m
   std::array<int, 3> dims = {0, 0, 0};
   std::vector<Voxel> voxels;
-  std::vector<Eigen::Vector3d> points;               // m
-  double volume = 0;                                 // m^3
+  std::vector<Eigen::Vector3d> points;  // m
+  double volume = 0;                    // m^3
 
   Eigen::Vector3d Corner(const std::array<int, 3>& cell) const {
     return origin + spacing * Eigen::Vector3d(cell[0], cell[1], cell[2]);

@@ -10,6 +10,7 @@
 #include "geometry/decompose.h"
 #include "geometry/hull.h"
 #include "geometry/mesh_io.h"
+#include "geometry/repair.h"
 #include "hand/primitive_mesh.h"
 
 namespace dexremoe::internal {
@@ -21,6 +22,7 @@ constexpr int kHullVertices = 32;
 constexpr double kNearlyConvex = 0.8;  // of the hull's volume
 constexpr int kLinkParts = 4;
 constexpr int kLinkVoxels = 20000;
+constexpr double kWeld = 1e-6;  // m; STL files repeat vertices, rounded differently
 constexpr char kCapsuleEnding[] = "_capsule";
 
 bool EndsWith(const std::string& text, const std::string& ending) {
@@ -112,7 +114,7 @@ ConvexParts ConvexPartsOf(const Context& context, const TriMesh& mesh) {
   options.parts = kLinkParts;
   options.resolution = kLinkVoxels;
   options.hull_vertices = kHullVertices;
-  return DecomposeConvex(mesh, options,
+  return DecomposeConvex(Weld(mesh, kWeld), options,
                          fmt::format("{}: link '{}'", context.urdf_path, context.link));
 }
 

@@ -21,7 +21,7 @@ DEX_VECTORIZED
 void Step(std::int64_t count, const StepConstants& k, const float* grads, float* m, float* v,
           float* params) {
   const StepConstants c = k;
-#pragma GCC ivdep
+  DEX_INDEPENDENT
   for (std::int64_t i = 0; i < count; ++i) {
     const float g = grads[i];
     const float first = c.beta1 * m[i] + c.rest1 * g;

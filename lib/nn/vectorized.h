@@ -11,3 +11,12 @@
 #else
 #define DEX_VECTORIZED  // clang vectorises at -O2
 #endif
+
+// Before a loop whose iterations touch no element of another one.
+#if defined(__clang__)
+#define DEX_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define DEX_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define DEX_INDEPENDENT
+#endif

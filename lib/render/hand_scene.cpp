@@ -44,10 +44,12 @@ View ViewOf(GoalPlace place) {
       return {0.365, 0.275, 0.045, -0.008};
     case GoalPlace::kBelow:
       return {0.22, 0.345, -0.012, -0.05};
-    case GoalPlace::kOver:
+    case GoalPlace::kOver:  // the free side is for the card of figures
+      return {0.365, 0.275, 0.055, -0.002};
+    case GoalPlace::kNone:
       break;
   }
-  return {0.26, 0.275, 0.0, -0.002};
+  return {0.24, 0.225, -0.003, 0.012};
 }
 
 }  // namespace
@@ -126,7 +128,7 @@ Image HandPicture(Renderer& renderer, const HandModel& hand, const std::vector<d
   Scene scene;
   items.Add(q.data(), scene);
   if (colliders) items.AddColliders(q.data(), scene);
-  return renderer.Draw(scene, HandCamera(GoalPlace::kOver, double(width) / height), width, height);
+  return renderer.Draw(scene, HandCamera(GoalPlace::kNone, double(width) / height), width, height);
 }
 
 }  // namespace dexremoe

@@ -33,7 +33,7 @@ Image StandingPicture(Renderer& renderer, std::vector<Item> items,
                       Eigen::Vector3d::UnitZ(),
                       1.5 * sphere.radius};
   scene.light = {-0.35, 0.95, 0.55};
-  const Camera camera = FrameSphere(sphere, {0.75, -1, 0.55}, Eigen::Vector3d::UnitZ(), 0.42,
+  const Camera camera = FrameSphere(sphere, {0.9, -0.9, 0.55}, Eigen::Vector3d::UnitZ(), 0.42,
                                     double(width) / height, 0.97);
   return renderer.Draw(scene, camera, width, height);
 }

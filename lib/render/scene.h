@@ -18,7 +18,7 @@ struct Material {
 
 namespace palette {
 inline const Material kPalm{{0.56f, 0.58f, 0.61f}, 0.30f, 1};
-inline const Material kLink{{0.23f, 0.245f, 0.27f}, 0.40f, 1};
+inline const Material kLink{{0.26f, 0.275f, 0.30f}, 0.40f, 1};
 inline const Material kTip{{0.80f, 0.81f, 0.82f}, 0.15f, 1};
 inline const Material kObject{{0.96f, 0.58f, 0.22f}, 0.35f, 1};
 inline const Material kGoal{{0.00f, 0.62f, 0.52f}, 0.50f, 0.55f};

@@ -28,7 +28,7 @@ DEX_VECTORIZED
 std::int32_t LowerDistances(int count, const float* x, const float* y, const float* z, float px,
                             float py, float pz, float* nearest) {
   std::int32_t largest = 0;
-#pragma GCC ivdep
+  DEX_INDEPENDENT
   for (int i = 0; i < count; ++i) {
     const float dx = x[i] - px, dy = y[i] - py, dz = z[i] - pz;
     const float distance = dx * dx + dy * dy + dz * dz;

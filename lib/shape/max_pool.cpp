@@ -9,7 +9,7 @@ namespace {
 
 DEX_VECTORIZED
 void TakeLarger(int k, const float* y, std::int32_t row, float* pooled, std::int32_t* winner) {
-#pragma GCC ivdep
+  DEX_INDEPENDENT
   for (int j = 0; j < k; ++j) {
     const float value = y[j], best = pooled[j];
     const std::int32_t holder = winner[j];

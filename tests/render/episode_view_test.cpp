@@ -164,7 +164,7 @@ TEST_F(EpisodeViewTest, TheHandPictureNeedsOneAnglePerJoint) {
   EXPECT_EQ(image.height, 48);
 }
 
-TEST_F(EpisodeViewTest, TheRealHandIsDrawn) {
+TEST_F(EpisodeViewTest, SlowTheRealHandIsDrawn) {
   const char* urdf = std::getenv("DEX_REAL_HAND");
   if (urdf == nullptr) GTEST_SKIP() << "DEX_REAL_HAND is not set";
   HandOptions options;

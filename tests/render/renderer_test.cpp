@@ -77,8 +77,12 @@ TEST_F(RendererTest, ABallAppearsWhereThePinholeSaysAndNowhereElse) {
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
         const double distance = std::hypot(x + 0.5 - at.x(), y + 0.5 - at.y());
-        if (distance < radius - 1.5) EXPECT_GT(Redness(image, x, y), 20) << x << ' ' << y;
-        if (distance > radius * 1.05 + 1.5) EXPECT_TRUE(SamePixel(image, empty, x, y));
+        if (distance < radius - 1.5) {
+          EXPECT_GT(Redness(image, x, y), 20) << x << ' ' << y;
+        }
+        if (distance > radius * 1.05 + 1.5) {
+          EXPECT_TRUE(SamePixel(image, empty, x, y));
+        }
         if (Redness(image, x, y) <= 20) continue;
         ++inside;
         sum_x += x + 0.5;

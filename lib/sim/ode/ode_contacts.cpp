@@ -89,8 +89,9 @@ double OdeEnv::FastestApproach() const {
 
 void OdeEnv::CreateContacts(ContactFinder& finder, double h) {
   active_.clear();
+  const double margin = kMargin + h * FastestApproach();
   for (const ContactPoint& point : finder.ObjectContacts(
-           poses_, object_, physics_.scale, ObjectPose(), kMargin, model_.options.max_contacts))
+           poses_, object_, physics_.scale, ObjectPose(), margin, model_.options.max_contacts))
     // Points that cannot close within the step are left out.
     if (point.gap - kSkin + h * RelativeVelocity(point).dot(point.normal) < kReach)
       active_.push_back({point, {}, {}});

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/check.h"
+#include "base/error.h"
 #include "base/log.h"
 
 namespace dexremoe {
@@ -17,8 +18,11 @@ std::string Format(const char* format, va_list arguments) {
   return text;
 }
 
-void OnBug(int, const char* message, va_list arguments) {
-  internal::CheckFailed("ode", 0, "internal check of ODE", Format(message, arguments));
+// ODE checks its numbers while it steps; a motion that is not finite ends here, in the middle of a
+// step. The exception passes through ODE (C++, compiled with unwinding) to OdeSim, which names the
+// environment.
+[[noreturn]] void OnFailure(int, const char* message, va_list arguments) {
+  throw Error("ODE: " + Format(message, arguments));
 }
 
 // The solver warns about near-singular pivots; the finite check after the step decides.
@@ -31,8 +35,8 @@ void OnMessage(int, const char* message, va_list arguments) {
 void StartOde() {
   static std::once_flag once;
   std::call_once(once, [] {
-    dSetErrorHandler(OnBug);
-    dSetDebugHandler(OnBug);
+    dSetErrorHandler(OnFailure);
+    dSetDebugHandler(OnFailure);
     dSetMessageHandler(OnMessage);
     DEX_CHECK_NE(dInitODE2(0), 0);
   });

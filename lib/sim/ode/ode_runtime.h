@@ -7,8 +7,8 @@ namespace dexremoe {
 
 static_assert(sizeof(dReal) == sizeof(double), "the packaged ODE computes in double precision");
 
-// Starts ODE once in the process and sends its messages to our log: its own handlers print and
-// exit. Safe from any thread.
+// Starts ODE once in the process. Its messages go to our log and its failed checks are thrown as
+// Error: its own handlers print and exit. Safe from any thread.
 void StartOde();
 
 // Call on every thread before it steps a world.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "base/check.h"
@@ -97,15 +98,24 @@ class OdeSim : public BatchSim {
       Chunk& chunk = *chunks_[c];
       for (int env = chunk.first; env < chunk.last; ++env) {
         if (!active.empty() && !active[env]) continue;
-        envs_[env]->Step(&targets[env * num_joints()], chunk.finder);
-        envs_[env]->Read(state_, env);
+        StepOne(env, &targets[env * num_joints()], chunk.finder);
       }
     });
-    for (int env = 0; env < num_envs_; ++env)
-      if (active.empty() || active[env]) CheckFinite(env);
   }
 
  private:
+  void StepOne(int env, const double* targets, ContactFinder& finder) {
+    std::string failure;
+    try {
+      envs_[env]->Step(targets, finder);
+    } catch (const Error& error) {
+      failure = error.what();
+    }
+    envs_[env]->Read(state_, env);
+    CheckFinite(env);
+    if (!failure.empty()) Fail("environment {}: step {}: {}", env, envs_[env]->steps(), failure);
+  }
+
   OdeEnv& At(int env) {
     DEX_CHECK_GE(env, 0);
     DEX_CHECK_LT(env, num_envs_);
@@ -129,7 +139,7 @@ class OdeSim : public BatchSim {
     const auto check = [&](const std::vector<double>& values, int width, const char* field) {
       if (!AllFinite(&values[static_cast<std::size_t>(env) * width], width))
         Fail("environment {}: step {}: {}: expected finite numbers (unstable simulation?)", env,
-             envs_[env]->steps() - 1, field);
+             envs_[env]->steps(), field);
     };
     check(state_.joint_position, num_joints(), "joint_position");
     check(state_.joint_velocity, num_joints(), "joint_velocity");

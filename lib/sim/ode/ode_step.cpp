@@ -12,6 +12,12 @@ using Eigen::Vector3d;
 
 Vector3d ToVector(const dReal* v) { return {v[0], v[1], v[2]}; }
 
+// Contact joints go with the step, also when it fails.
+struct ContactJointsOfAStep {
+  dJointGroupID group;
+  ~ContactJointsOfAStep() { dJointGroupEmpty(group); }
+};
+
 }  // namespace
 
 void OdeEnv::Step(const double* targets, ContactFinder& finder) {
@@ -22,13 +28,13 @@ void OdeEnv::Step(const double* targets, ContactFinder& finder) {
 }
 
 void OdeEnv::Substep(const double* targets, double h, ContactFinder& finder) {
+  const ContactJointsOfAStep contact_joints{arena_.contact_joints()};
   UpdateLinkPoses();
   for (int j = 0; j < model_.hand.num_joints(); ++j) SetServo(j, targets[j], h);
   CreateContacts(finder, h);
   if (!held_) dBodyAddForce(object_body_, push_[0], push_[1], push_[2]);
   dWorldStep(world_, h);
   CollectForces();
-  dJointGroupEmpty(arena_.contact_joints());
 }
 
 void OdeEnv::UpdateLinkPoses() {
