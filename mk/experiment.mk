@@ -50,7 +50,8 @@ OBJECT_FILES = $(foreach name,$(OBJECT_NAMES),$(OBJDIR)/$(name)/$(1).h5)
 
 define object_rules
 $(OBJDIR)/$(1)/mesh.h5: $(MESH_$(1)) $(CONFIG) | $(BIN)/scale_mesh
-	$(BIN)/scale_mesh --config=$(CONFIG) --mesh=$$< --name=$(1) --category=$(CATEGORY_$(1)) --out=$$@ >$(OBJDIR)/$(1).log
+	@mkdir -p $$(@D)
+	$(BIN)/scale_mesh --config=$(CONFIG) --mesh=$$< --name=$(1) --category=$(CATEGORY_$(1)) --out=$$@ >$$(@D)/scale.log
 endef
 $(foreach name,$(OBJECT_NAMES),$(eval $(call object_rules,$(name))))
 
@@ -90,18 +91,21 @@ $(EXPERT_FILES): $(OUT)/expert_%.h5: $(OUT)/base.h5 | $(BIN)/train_expert
 $(OUT)/gate.h5: $(EXPERT_FILES) | $(BIN)/train_gate
 	$(call train,train_gate --experts=$(call commas,$(EXPERT_FILES)))
 
+# Controls: the network as initialised, and the experts without a gate.
+$(OUT)/untrained.h5: $(READY) | $(BIN)/train_base
+	$(call train,train_base --samples=0)
+$(OUT)/uniform.h5: $(EXPERT_FILES) | $(BIN)/train_gate
+	$(call train,train_gate --experts=$(call commas,$(EXPERT_FILES)) --policy.gate_uniform --samples=0)
+
 # --- Evaluation ---------------------------------------------------------------------------------
 
 METHODS := untrained base uniform gate
 LABELS  := Untrained,Base policy,Uniform average,DexReMoE
-policy_untrained = --policy=untrained
-policy_base      = --policy=$(OUT)/base.h5
-policy_uniform   = --policy=$(OUT)/gate.h5 --uniform_gate
-policy_gate      = --policy=$(OUT)/gate.h5
 EVAL_FILES := $(METHODS:%=$(OUT)/eval/%.h5)
 
-$(EVAL_FILES): $(OUT)/eval/%.h5: $(OUT)/gate.h5 $(OUT)/base.h5 | $(BIN)/evaluate
-	$(BIN)/evaluate $(COMMON) $(SIM) $(policy_$*) --objects=$(OUT)/objects.csv --split=all --out=$@ \
+$(EVAL_FILES): $(OUT)/eval/%.h5: $(OUT)/%.h5 | $(BIN)/evaluate
+	@mkdir -p $(@D)
+	$(BIN)/evaluate $(COMMON) $(SIM) --policy=$< --objects=$(OUT)/objects.csv --split=all --out=$@ \
 	  --trace=$(OUT)/trace/$*.h5 >$(OUT)/eval/$*.txt
 
 $(OUT)/tables/table1.md: $(EVAL_FILES) data/paper_tables.csv | $(BIN)/tabulate
@@ -114,12 +118,14 @@ $(OUT)/tsne.h5: $(OUT)/gate.h5 $(OUT)/shape_net.h5 | $(BIN)/embed_gate
 
 # --- Figures ------------------------------------------------------------------------------------
 
+CURVES := $(patsubst %,$(OUT)/curves/%.csv,base $(EXPERTS:%=expert_%) gate)
 $(OUT)/figures/curves.png: $(OUT)/gate.h5 | $(BIN)/plot
-	$(BIN)/plot --kind=curves --in=$(call commas,$(wildcard $(OUT)/curves/*.csv)) --out=$@
+	$(BIN)/plot --kind=curves --in=$(call commas,$(CURVES)) --labels="Base,Generalist,Airplane,Train,Animal,Gate" \
+	  --out=$(basename $@)
 $(OUT)/figures/per_object.png: $(EVAL_FILES) | $(BIN)/plot
-	$(BIN)/plot --kind=bars --in=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" --out=$@
+	$(BIN)/plot --kind=bars --in=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" --out=$(basename $@)
 $(OUT)/figures/tsne.png: $(OUT)/tsne.h5 | $(BIN)/plot
-	$(BIN)/plot --kind=tsne --in=$< --out=$@
+	$(BIN)/plot --kind=tsne --in=$< --out=$(basename $@)
 $(OUT)/figures/objects.png: $(OUT)/objects.mk $(call OBJECT_FILES,mesh) | $(BIN)/render
 	$(BIN)/render --kind=objects --objects=$(OUT)/objects.csv --out=$@
 $(OUT)/figures/parts.png: $(OUT)/objects.mk $(call OBJECT_FILES,parts) | $(BIN)/render

@@ -239,17 +239,20 @@ std::string Options::Text() const {
   return text;
 }
 
-void Options::CheckKey(const std::string& path, const std::string& section,
-                       const std::string& key) const {
-  const std::string name = section == tool_ ? key : section + "." + key;
-  if (Has(name)) return;
+std::string Options::FlagOf(const std::string& path, const std::string& section,
+                            const std::string& key) const {
+  // [decompose] holds both the tool's own options and the library's section of that name.
+  if (section == tool_ && Has(key)) return key;
+  if (const std::string name = section + "." + key; Has(name)) return name;
   std::vector<std::string> known;
-  const std::string prefix = section == tool_ ? "" : section + ".";
-  for (const Entry& entry : entries_)
-    if (entry.name.starts_with(prefix) && (section != tool_ || entry.name.find('.') == std::string::npos))
-      known.push_back(entry.name.substr(prefix.size()));
-  throw UsageError(fmt::format("{}: unknown key '{}' in [{}]{}", path, key, section,
-                               Suggestion(key, known)));
+  for (const Entry& entry : entries_) {
+    if (entry.name.starts_with(section + "."))
+      known.push_back(entry.name.substr(section.size() + 1));
+    else if (section == tool_ && entry.name.find('.') == std::string::npos)
+      known.push_back(entry.name);
+  }
+  throw UsageError(
+      fmt::format("{}: unknown key '{}' in [{}]{}", path, key, section, Suggestion(key, known)));
 }
 
 std::vector<std::string> Options::ReadConfig(const std::string& path) const {
@@ -279,9 +282,8 @@ std::vector<std::string> Options::ReadConfig(const std::string& path) const {
     if (!used) continue;
     for (const auto& [key, value] : *keys) {
       const std::string name(key.str());
-      CheckKey(path, section, name);
-      flags.push_back(fmt::format("--{}{}={}", section == tool_ ? "" : section + ".", name,
-                                  FlagText(path, name, value)));
+      flags.push_back(
+          fmt::format("--{}={}", FlagOf(path, section, name), FlagText(path, name, value)));
     }
   }
   return flags;

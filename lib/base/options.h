@@ -80,7 +80,9 @@ class Options {
     bool stored = true;
   };
   std::vector<std::string> ReadConfig(const std::string& path) const;
-  void CheckKey(const std::string& path, const std::string& section, const std::string& key) const;
+  // The option that `key` under [section] sets; throws UsageError with a suggestion.
+  std::string FlagOf(const std::string& path, const std::string& section,
+                     const std::string& key) const;
 
   std::string tool_;
   std::string example_;

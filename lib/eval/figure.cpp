@@ -22,7 +22,8 @@ constexpr double kPngDotsPerInch = 180;
 
 // Both formats from one script. The fonts keep their size in points whatever the format.
 std::string FullScript(const std::string& name, const Figure& figure) {
-  const double scale = kPngDotsPerInch / 96;  // gnuplot's PNG terminal counts 96 dots to the inch
+  // gnuplot's PNG terminal counts 96 dots to the inch, its PDF terminal 72: the same size on paper.
+  const double scale = kPngDotsPerInch / 96;
   return fmt::format(
       "# Restyle freely, then run: gnuplot {0}.gp\n"
       "if (!exists(\"out\")) out = \"{0}\"\n"
@@ -30,14 +31,14 @@ std::string FullScript(const std::string& name, const Figure& figure) {
       "set encoding utf8\n"
       "do for [format in \"png pdf\"] {{\n"
       "if (format eq \"png\") {{\n"
-      "  set terminal pngcairo noenhanced size {1:.0f},{2:.0f} font \"DejaVu Sans,8\" "
+      "  set terminal pngcairo noenhanced size {1:.0f},{2:.0f} font \"DejaVu Sans,9\" "
       "fontscale {3:.3g} linewidth {3:.3g} pointscale {3:.3g} background \"white\"\n"
       "}} else {{\n"
-      "  set terminal pdfcairo noenhanced size {4:.3g}cm,{5:.3g}cm font \"DejaVu Sans,8\" "
-      "fontscale 1 background \"white\"\n"
+      "  set terminal pdfcairo noenhanced size {4:.3g}cm,{5:.3g}cm font \"DejaVu Sans,9\" "
+      "fontscale 0.75 background \"white\"\n"
       "}}\n"
       "set output out.\".\".format\n"
-      "set pointintervalbox 0\nset key reverse Left\n"
+      "set key reverse Left\n"
       "{6}"
       "unset output\n"
       "}}\n",

@@ -88,12 +88,13 @@ std::string PlotLines(const std::vector<BarMethod>& methods, bool bars) {
     if (bars)
       script += fmt::format(
           "data index {0} using 1:3 with boxes lc rgb \"{1}\" fs solid 0.85 noborder title {2}, \\\n"
-          "  data index {0} using 1:3:4:5 with yerrorbars pt -1 lw 0.8 lc rgb \"#303030\" notitle",
+          "  data index {0} using 1:4:(0):($5-$4) with vectors nohead lw 0.9 lc rgb \"#303030\" notitle",
           m, color, title);
     else
       script += fmt::format(
-          "data index {0} using 1:3:4:5 with yerrorbars pt 7 ps 0.35 lw 0.6 lc rgb \"{1}\" title {2}",
-          m, color, title);
+          "data index {0} using 1:4:(0):($5-$4) with vectors nohead lw 0.6 lc rgb \"{1}\" notitle, \\\n"
+          "  data index {0} using 1:3 with points pt 7 ps 0.35 lc rgb \"{3}\" title {2}",
+          m, PaletteColor(static_cast<int>(m), 0x80), title, color);
   }
   return script + "\n";
 }
@@ -113,7 +114,7 @@ Figure BarsFigure(const std::vector<BarMethod>& methods, double tolerance) {
   figure.script = fmt::format(
       "set key outside top center horizontal samplen 1.5\n"
       "set border 3 lw 0.7\nset grid ytics lc rgb \"#D8D8D8\" lw 0.5 lt 1\n"
-      "set ytics nomirror out scale 0.5\nset errorbars small\n"
+      "set ytics nomirror out scale 0.5\n"
       "set boxwidth {:.4f}\nset xrange [-0.7:{}]\nset yrange [0:*]\n"
       "set ylabel \"successes per episode at {} rad\"\n",
       0.92 * kGroupWidth / static_cast<double>(methods.size()),

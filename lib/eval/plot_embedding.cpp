@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMostNames = 30;  // objects; beyond that they are numbered
 constexpr double kMap = 12.5;           // cm, side of the map
 constexpr double kMarkerRadius = 0.1;   // cm
-constexpr double kLetterWidth = 0.142;  // cm, of a label
+constexpr double kLetterWidth = 0.12;  // cm, of a label
 
 // The group of every object, and what each group is called.
 struct Groups {
@@ -103,7 +103,7 @@ std::string PlotLines(const Groups& groups) {
         "\"{1}\" notitle, \\\n  NaN with points pt 7 ps 0.9 lc rgb \"{1}\" title {2}, \\\n  ",
         group, PaletteColor(group), GnuplotQuoted(name));
   return script +
-         "data index 2 using 1:2:3 with labels center boxed font \"DejaVu Sans,6.5\" textcolor rgb "
+         "data index 2 using 1:2:3 with labels center boxed font \"DejaVu Sans,7\" textcolor rgb "
          "\"#202020\" notitle\n";
 }
 
@@ -146,7 +146,7 @@ Figure EmbeddingFigure(const Embedding& map, const std::string& color) {
       "set xrange [0:{4}]\nset yrange [0:{4}]\nunset tics\nset border 15 lw 0.6 lc rgb \"#A0A0A0\"\n"
       "set style textbox opaque noborder margins 0.3,0.3 fillcolor rgb \"#50FFFFFF\"\n"
       "set key at screen 0.5,screen {5:.4f} center center horizontal samplen 0.6 maxcols 4\n"
-      "set label 1 {6} at screen 0.5,screen {7:.4f} center noenhanced font \"DejaVu Sans,7\" textcolor rgb "
+      "set label 1 {6} at screen 0.5,screen {7:.4f} center noenhanced font \"DejaVu Sans,7.5\" textcolor rgb "
       "\"#404040\"\n",
       0.2 / figure.width, 1 - 0.2 / figure.width, bottom, top, kMap,
       (top + 1) / 2,

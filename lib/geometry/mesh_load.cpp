@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <sstream>
+#include <utility>
 
 #include "base/error.h"
 #include "geometry/mesh_io.h"
@@ -50,6 +51,18 @@ Promise ReadPromise(const std::string& extension, const std::string& bytes) {
   return promise;
 }
 
+// Assimp 5.2 takes a first data byte that looks like a line end for part of a binary PLY's header,
+// and then every value is off by a byte. A one-byte element before the others keeps the data away
+// from it.
+std::string WithGuardedHeader(std::string bytes) {
+  constexpr std::string_view kEnd = "end_header\n";
+  const std::size_t end = bytes.find(kEnd), first = bytes.find("\nelement ");
+  if (bytes.find("format binary") > end || end == std::string::npos || first > end) return bytes;
+  bytes.insert(end + kEnd.size(), "p");
+  bytes.insert(first + 1, "element padding 1\nproperty uchar padding\n");
+  return bytes;
+}
+
 Eigen::Matrix4d ToEigen(const aiMatrix4x4& m) {
   Eigen::Matrix4d result;
   result << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2,
@@ -73,12 +86,7 @@ void AppendMesh(const std::string& path, const aiMesh& source, const Eigen::Matr
     const aiFace& face = source.mFaces[i];
     if (face.mNumIndices != 3) continue;  // points and lines
     std::array<int, 3> triangle;
-    for (int k = 0; k < 3; ++k) {
-      if (face.mIndices[k] >= source.mNumVertices)
-        Fail("{}: face {}: expected a vertex index below {}, found {}", path, i,
-             source.mNumVertices, face.mIndices[k]);
-      triangle[k] = first + static_cast<int>(face.mIndices[k]);
-    }
+    for (int k = 0; k < 3; ++k) triangle[k] = first + static_cast<int>(face.mIndices[k]);
     if (mirrored) std::swap(triangle[1], triangle[2]);
     mesh.triangles.push_back(triangle);
   }
@@ -93,6 +101,18 @@ void AppendNode(const std::string& path, const aiScene& scene, const aiNode& nod
     AppendNode(path, scene, *node.mChildren[i], transform, mesh);
 }
 
+// Assimp's own triangulation trusts the indices, and a damaged file would crash it.
+void CheckIndices(const std::string& path, const aiScene& scene) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i)
+      for (unsigned k = 0; k < mesh.mFaces[i].mNumIndices; ++k)
+        if (mesh.mFaces[i].mIndices[k] >= mesh.mNumVertices)
+          Fail("{}: face {}: expected vertex indices below {}, found {} (truncated or damaged?)",
+               path, i, mesh.mNumVertices, mesh.mFaces[i].mIndices[k]);
+  }
+}
+
 std::string OneLine(std::string text) {
   for (char& c : text)
     if (c == '\n' || c == '\r') c = ' ';
@@ -102,7 +122,7 @@ std::string OneLine(std::string text) {
 }  // namespace
 
 TriMesh LoadMesh(const std::string& path) {
-  const std::string bytes = ReadFile(path);
+  std::string bytes = ReadFile(path);
   if (bytes.empty()) Fail("{}: expected a mesh, found an empty file", path);
   const std::string extension = LowerExtension(path);
   const Promise promise = ReadPromise(extension, bytes);
@@ -113,8 +133,16 @@ TriMesh LoadMesh(const std::string& path) {
   if (!importer.IsExtensionSupported(extension))
     Fail("{}: expected a mesh file (obj, stl, ply, off, dae, fbx, gltf, glb), found '{}'", path,
          extension);
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+  if (extension == ".ply") bytes = WithGuardedHeader(std::move(bytes));
+  // Other formats may refer to files beside them.
+  const aiScene* scene = extension == ".ply"
+                             ? importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, "ply")
+                             : importer.ReadFile(path, 0);
   if (scene == nullptr || scene->mRootNode == nullptr)
+    Fail("{}: not a readable mesh: {}", path, OneLine(importer.GetErrorString()));
+  CheckIndices(path, *scene);
+  scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+  if (scene == nullptr)
     Fail("{}: not a readable mesh: {}", path, OneLine(importer.GetErrorString()));
   TriMesh mesh;
   AppendNode(path, *scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), mesh);

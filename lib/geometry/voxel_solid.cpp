@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "geometry/triangle_bvh.h"
 
 namespace dexremoe {
 namespace {
@@ -47,6 +48,10 @@ void ForEachSlab(const Polygon& polygon, int axis, const Body& body) {
   }
 }
 
+// States of a cell that the surface does not pass through.
+constexpr int kEmpty = -1;
+constexpr int kInner = -2;
+
 // What the surface leaves in one voxel while the triangles are cut up.
 struct Cut {
   Polygon points;
@@ -89,7 +94,7 @@ int SortOut(Polygon& points) {
 
 class Voxeliser {
  public:
-  Voxeliser(const TriMesh& mesh, int resolution) : mesh_(mesh) {
+  Voxeliser(const TriMesh& mesh, int resolution) : mesh_(mesh), surface_(mesh) {
     const Box3 bounds = BoundsOf(mesh);
     // A flat box still needs a volume to divide.
     const Eigen::Vector3d size = bounds.Size().cwiseMax(1e-3 * bounds.Size().maxCoeff());
@@ -100,7 +105,7 @@ class Voxeliser {
       solid_.origin[k] = bounds.Center()[k] - (solid_.dims[k] / 2.0 + 0.0137) * solid_.spacing;
     }
     cut_of_cell_.assign(static_cast<std::size_t>(solid_.dims[0]) * solid_.dims[1] * solid_.dims[2],
-                        -1);
+                        kEmpty);
   }
 
   VoxelSolid Run() {
@@ -117,6 +122,7 @@ class Voxeliser {
       });
     }
     FillColumns();
+    for (Voxel& voxel : solid_.voxels) TakePoints(voxel);
     return std::move(solid_);
   }
 
@@ -155,7 +161,8 @@ class Voxeliser {
           if (index >= 0) {
             ceiling -= cuts_[index].area;
             share = ceiling + cuts_[index].moment;
-            TakePoints(cuts_[index], voxel);
+          } else {
+            cut_of_cell_[Index(voxel.cell)] = kInner;
           }
           voxel.volume = unit * std::clamp(share, 0.0, 1.0);
           solid_.volume += voxel.volume;
@@ -163,17 +170,41 @@ class Voxeliser {
         }
   }
 
-  void TakePoints(Cut& cut, Voxel& voxel) {
-    voxel.extreme = SortOut(cut.points);
+  // Whether a node of the grid is in the solid. Nodes next to an empty or an inner voxel are known.
+  bool NodeInside(const std::array<int, 3>& node) {
+    for (int side = 0; side < 8; ++side) {
+      const std::array<int, 3> cell = {node[0] - (side & 1), node[1] - (side >> 1 & 1),
+                                       node[2] - (side >> 2)};
+      bool within = true;
+      for (int k = 0; k < 3; ++k) within = within && cell[k] >= 0 && cell[k] < solid_.dims[k];
+      const int state = within ? cut_of_cell_[Index(cell)] : kEmpty;
+      if (state < 0) return state == kInner;
+    }
+    return surface_.WindingNumber(solid_.Corner(node)) > 0.5;
+  }
+
+  // The surface pieces' corners and those corners of the voxel that are in the solid.
+  void TakePoints(Voxel& voxel) {
+    const int index = cut_of_cell_[Index(voxel.cell)];
+    if (index < 0) return;
+    Polygon points = std::move(cuts_[index].points);
+    for (int corner = 0; corner < 8; ++corner) {
+      const std::array<int, 3> node = {voxel.cell[0] + (corner & 1),
+                                       voxel.cell[1] + (corner >> 1 & 1),
+                                       voxel.cell[2] + (corner >> 2)};
+      if (NodeInside(node)) points.emplace_back(node[0], node[1], node[2]);
+    }
+    voxel.extreme = SortOut(points);
     voxel.first = static_cast<int>(solid_.points.size());
-    voxel.count = static_cast<int>(cut.points.size());
-    for (const Eigen::Vector3d& p : cut.points)
+    voxel.count = static_cast<int>(points.size());
+    for (const Eigen::Vector3d& p : points)
       solid_.points.push_back(solid_.origin + solid_.spacing * p);
   }
 
   const TriMesh& mesh_;
+  const TriangleBvh surface_;
   VoxelSolid solid_;
-  std::vector<int> cut_of_cell_;
+  std::vector<int> cut_of_cell_;  // index into cuts_, kEmpty or kInner
   std::vector<Cut> cuts_;
 };
 

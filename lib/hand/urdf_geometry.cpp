@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr int kHullVertices = 32;
 constexpr double kNearlyConvex = 0.8;  // of the hull's volume
 constexpr int kLinkParts = 4;
-constexpr int kLinkVoxels = 20000;
+constexpr int kLinkVoxels = 10000;
 constexpr double kWeld = 1e-6;  // m; STL files repeat vertices, rounded differently
 constexpr char kCapsuleEnding[] = "_capsule";
 

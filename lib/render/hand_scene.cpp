@@ -43,7 +43,7 @@ View ViewOf(GoalPlace place) {
     case GoalPlace::kBeside:
       return {0.365, 0.275, 0.045, -0.008};
     case GoalPlace::kBelow:
-      return {0.22, 0.345, -0.012, -0.05};
+      return {0.25, 0.345, 0.004, -0.05};
     case GoalPlace::kOver:  // the free side is for the card of figures
       return {0.365, 0.275, 0.055, -0.002};
     case GoalPlace::kNone:

@@ -12,8 +12,8 @@
 
 namespace dexremoe {
 
-// Where the goal's ghost stands: beside the hand, below the object, or over it; kNone shows the hand
-// alone.
+// Where the goal's ghost stands: beside the hand, below the object, or over it; kNone shows the
+// hand alone.
 enum class GoalPlace { kBeside, kBelow, kOver, kNone };
 // "beside", "below" or "over"; throws Error for another word.
 GoalPlace PlaceNamed(const std::string& word);

@@ -20,7 +20,7 @@ Eigen::Vector3f Distinct(int index) {
 
 Eigen::Vector3f Wheel(int index) {
   const double hue = 6 * std::fmod(0.06 + 0.618034 * index, 1.0);  // steps of the golden ratio
-  const float value = index % 3 == 1 ? 0.80f : 0.93f, low = index % 2 == 0 ? 0.30f : 0.42f;
+  const float value = index % 3 == 1 ? 0.80f : 0.90f, low = index % 2 == 0 ? 0.42f : 0.52f;
   Eigen::Vector3f color;
   for (int k = 0; k < 3; ++k) {
     const double part = std::fmod(5 - 2 * k + hue, 6.0);  // HSV by the usual piecewise lines

@@ -31,8 +31,8 @@ SheetObject ReadSheetObject(const ObjectEntry& entry, const std::string& up, boo
   object.mesh = ReadObjectMesh(entry.folder + "/mesh.h5").mesh;
   if (!with_parts) return object;
   ObjectParts parts = ReadParts(entry.folder + "/parts.h5");
-  object.detail = fmt::format("{} parts, volume x {:.2f}, Hausdorff {:.1f} %", parts.parts.size(),
-                              parts.volume_ratio, 100 * parts.hausdorff_ratio);
+  object.detail = fmt::format("{} parts, volume ratio {:.2f}, Hausdorff {:.1f} %",
+                              parts.parts.size(), parts.volume_ratio, 100 * parts.hausdorff_ratio);
   object.parts = std::move(parts.parts);
   return object;
 }

@@ -129,6 +129,9 @@ void ReorientBatch::Restore(const std::vector<std::uint8_t>& bytes) {
   ByteReader in(bytes);
   internal::RestoreOptions(in, impl_->options);
   impl_->state.Restore(in);
+  for (const int object : impl_->state.object)
+    if (object < 0 || object >= static_cast<int>(impl_->objects.size()))
+      Fail("saved state: object: expected 0..{}, found {}", impl_->objects.size() - 1, object);
   impl_->records = internal::RestoreRecords(in);
   for (int env = 0; env < num_envs(); ++env) {
     EnvPhysics& p = impl_->physics[env];

@@ -29,7 +29,9 @@ TEST(MassProperties, OfASphereConvergeQuadratically) {
     const MassProperties p = MassPropertiesOf(SphereMesh(r, n));
     const double error = 1 - p.volume / volume;
     EXPECT_GT(error, 0);  // inscribed
-    if (previous > 0) EXPECT_NEAR(previous / error, 4, 0.3);
+    if (previous > 0) {
+      EXPECT_NEAR(previous / error, 4, 0.3);
+    }
     previous = error;
     EXPECT_NEAR(p.inertia(0, 0) / (0.4 * p.volume * r * r), 1, 2 * error);
   }

@@ -67,7 +67,16 @@ dWorldID OdeArena::CreateWorld() {
                                        threading_);
   DEX_CHECK_NE(dWorldUseSharedWorkingMemory(world, memory_owner_), 0);
   dWorldSetAutoDisableFlag(world, 0);
+  worlds_.push_back(world);
   return world;
+}
+
+void OdeArena::Recover() {
+  threading_ = dThreadingAllocateSelfThreadedImplementation();
+  for (const dWorldID world : worlds_)
+    dWorldSetStepThreadingImplementation(world, dThreadingImplementationGetFunctions(threading_),
+                                         threading_);
+  dWorldCleanupWorkingMemory(memory_owner_);
 }
 
 }  // namespace dexremoe

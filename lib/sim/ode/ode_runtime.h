@@ -3,6 +3,8 @@
 
 #include <ode/ode.h>
 
+#include <vector>
+
 namespace dexremoe {
 
 static_assert(sizeof(dReal) == sizeof(double), "the packaged ODE computes in double precision");
@@ -26,8 +28,12 @@ class OdeArena {
 
   dWorldID CreateWorld();
   dJointGroupID contact_joints() const { return contact_joints_; }
+  // After an exception out of a step, before the next one. ODE's queue of jobs cannot be cleared or
+  // freed then, so it is given up and replaced.
+  void Recover();
 
  private:
+  std::vector<dWorldID> worlds_;
   dThreadingImplementationID threading_;
   dJointGroupID contact_joints_;
   dWorldID memory_owner_;  // holds the working memory; never stepped

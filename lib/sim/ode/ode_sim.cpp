@@ -98,22 +98,24 @@ class OdeSim : public BatchSim {
       Chunk& chunk = *chunks_[c];
       for (int env = chunk.first; env < chunk.last; ++env) {
         if (!active.empty() && !active[env]) continue;
-        StepOne(env, &targets[env * num_joints()], chunk.finder);
+        StepOne(env, &targets[env * num_joints()], chunk);
       }
     });
   }
 
  private:
-  void StepOne(int env, const double* targets, ContactFinder& finder) {
+  void StepOne(int env, const double* targets, Chunk& chunk) {
+    const std::int64_t step = envs_[env]->steps();
     std::string failure;
     try {
-      envs_[env]->Step(targets, finder);
+      envs_[env]->Step(targets, chunk.finder);
     } catch (const Error& error) {
       failure = error.what();
+      chunk.arena.Recover();
     }
     envs_[env]->Read(state_, env);
-    CheckFinite(env);
-    if (!failure.empty()) Fail("environment {}: step {}: {}", env, envs_[env]->steps(), failure);
+    CheckFinite(env, step);
+    if (!failure.empty()) Fail("environment {}: step {}: {}", env, step, failure);
   }
 
   OdeEnv& At(int env) {
@@ -135,11 +137,11 @@ class OdeSim : public BatchSim {
     state_.max_penetration.resize(n);
   }
 
-  void CheckFinite(int env) const {
+  void CheckFinite(int env, std::int64_t step) const {
     const auto check = [&](const std::vector<double>& values, int width, const char* field) {
       if (!AllFinite(&values[static_cast<std::size_t>(env) * width], width))
         Fail("environment {}: step {}: {}: expected finite numbers (unstable simulation?)", env,
-             envs_[env]->steps(), field);
+             step, field);
     };
     check(state_.joint_position, num_joints(), "joint_position");
     check(state_.joint_velocity, num_joints(), "joint_velocity");

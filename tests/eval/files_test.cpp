@@ -1,0 +1,349 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "eval/embedding.h"
+#include "eval/eval_file.h"
+#include "eval/report.h"
+#include "eval/tables.h"
+#include "eval/trace.h"
+#include "io/atomic_file.h"
+#include "io/csv.h"
+
+namespace dexremoe {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string Path(const std::string& name) {
+  return (std::filesystem::path(::testing::TempDir()) /
+          ("eval_test_" + std::to_string(getpid()) + "_" + name))
+      .string();
+}
+
+std::string Message(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// Six training objects and two others, both tolerances, ten episodes each.
+EvalFile SampleEval(double skill, std::uint64_t seed = 1) {
+  EvalFile eval;
+  eval.policy = "base.h5";
+  eval.engine = "ode";
+  eval.substeps = 2;
+  eval.seed = seed;
+  for (int o = 0; o < 8; ++o)
+    eval.objects.push_back({"object_" + std::to_string(o), "train", o < 6 ? "train" : "ood"});
+  for (const double tolerance : {0.4, 0.1}) {
+    EvalRun& run = eval.runs.emplace_back();
+    run.tolerance = tolerance;
+    Rng rng(seed, Stream::kTest);
+    for (int o = 0; o < 8; ++o)
+      for (int e = 0; e < 10; ++e) {
+        EpisodeRecord r;
+        r.object = o;
+        r.episode = static_cast<std::uint64_t>(e);
+        r.length = 100 + static_cast<int>(rng.Index(501));
+        r.end = r.length == 600 ? EpisodeEnd::kTimeout : EpisodeEnd::kFall;
+        r.successes = static_cast<int>(skill * tolerance * (o + 1) * rng.Uniform());
+        r.total_reward = rng.Normal();
+        r.mean_angle = rng.Uniform();
+        r.mean_distance = 0.01 * rng.Uniform();
+        run.episodes.push_back(r);
+      }
+    run.metrics = ComputeMetrics(run.episodes, {100, seed});
+  }
+  return eval;
+}
+
+TEST(EvalFile, ComesBackWhole) {
+  const std::string path = Path("eval.h5");
+  const EvalFile eval = SampleEval(5);
+  WriteEval(path, eval, {"test", "", 1, {}});
+  const EvalFile back = ReadEval(path);
+  EXPECT_EQ(back.policy, "base.h5");
+  EXPECT_EQ(back.engine, "ode");
+  EXPECT_EQ(back.substeps, 2);
+  ASSERT_EQ(back.objects.size(), 8u);
+  EXPECT_EQ(back.objects[7].split, "ood");
+  ASSERT_EQ(back.runs.size(), 2u);
+  for (int r = 0; r < 2; ++r) {
+    EXPECT_EQ(back.runs[r].tolerance, eval.runs[r].tolerance);
+    ASSERT_EQ(back.runs[r].episodes.size(), eval.runs[r].episodes.size());
+    for (std::size_t i = 0; i < eval.runs[r].episodes.size(); ++i) {
+      const EpisodeRecord &a = eval.runs[r].episodes[i], &b = back.runs[r].episodes[i];
+      EXPECT_EQ(a.object, b.object);
+      EXPECT_EQ(a.episode, b.episode);
+      EXPECT_EQ(a.length, b.length);
+      EXPECT_EQ(a.successes, b.successes);
+      EXPECT_EQ(a.end, b.end);
+      EXPECT_EQ(a.total_reward, b.total_reward);
+      EXPECT_EQ(a.mean_angle, b.mean_angle);
+      EXPECT_EQ(a.mean_distance, b.mean_distance);
+    }
+    // The stored metrics are those of the stored episodes.
+    const Metrics again = ComputeMetrics(back.runs[r].episodes, {100, eval.seed});
+    for (int k = 0; k < kNumMetrics; ++k) {
+      EXPECT_EQ(back.runs[r].metrics.values[k].value, again.values[k].value);
+      EXPECT_EQ(back.runs[r].metrics.values[k].low, again.values[k].low);
+    }
+    for (int o = 0; o < 8; ++o) {
+      EXPECT_EQ(back.runs[r].metrics.objects[o].values[0].high, again.objects[o].values[0].high);
+      EXPECT_EQ(back.runs[r].metrics.objects[o].episodes, 10);
+    }
+  }
+}
+
+TEST(EvalFile, SplitsAndTolerancesAreFound) {
+  const EvalFile eval = SampleEval(5);
+  ASSERT_NE(FindRun(eval, 0.1), nullptr);
+  EXPECT_EQ(FindRun(eval, 0.2), nullptr);
+  EXPECT_EQ(EpisodesOfSplit(eval, eval.runs[0], "train").size(), 60u);
+  EXPECT_EQ(EpisodesOfSplit(eval, eval.runs[0], "ood").size(), 20u);
+  EXPECT_EQ(EpisodesOfSplit(eval, eval.runs[0], "all").size(), 80u);
+}
+
+TEST(Report, ShowsEveryObjectToleranceAndMetric) {
+  const EvalFile eval = SampleEval(5);
+  const std::string text = ReportOf(eval);
+  for (const EvalObject& object : eval.objects) EXPECT_THAT(text, HasSubstr(object.name));
+  for (const char* word : {"tolerance 0.4 rad", "tolerance 0.1 rad", "S_min", "S_5-", "S_mean",
+                           "falls", "engine ode with 2 substeps", "seed 1"})
+    EXPECT_THAT(text, HasSubstr(word));
+}
+
+TraceFile SampleTrace(int experts) {
+  TraceFile trace;
+  trace.policy = "gate.h5";
+  trace.tolerance = 0.4;
+  trace.joint_names = {"j1", "j2"};
+  for (int e = 0; e < experts; ++e) trace.expert_names.push_back("e" + std::to_string(e));
+  for (const int length : {3, 1}) {
+    EpisodeTrace& e = trace.episodes.emplace_back();
+    e.object = "duck";
+    e.category = "animal";
+    e.episode = static_cast<std::uint64_t>(length);
+    e.scale = 0.9;
+    e.end = "fall";
+    e.successes = length - 1;
+    for (int t = 0; t < length; ++t) {
+      for (int k = 0; k < 2; ++k) {
+        e.joint_position.push_back(t + 0.1 * k);
+        e.action.push_back(static_cast<float>(-t));
+      }
+      for (int k = 0; k < 3; ++k) e.object_position.push_back(t * k);
+      for (int k = 0; k < 4; ++k) {
+        e.object_rotation.push_back(k == 0);
+        e.goal_rotation.push_back(k == 1);
+      }
+      e.angle.push_back(3.0 - t);
+      e.success.push_back(static_cast<std::uint8_t>(t > 0));
+      for (int k = 0; k < experts; ++k) e.gate.push_back(1.0f / static_cast<float>(experts));
+    }
+  }
+  return trace;
+}
+
+TEST(Trace, ComesBackWithAndWithoutAGate) {
+  for (const int experts : {0, 4}) {
+    const std::string path = Path("trace.h5");
+    const TraceFile trace = SampleTrace(experts);
+    WriteTrace(path, trace, {"test", "", 1, {}});
+    const TraceFile back = ReadTrace(path);
+    EXPECT_EQ(back.joint_names, trace.joint_names);
+    EXPECT_EQ(back.expert_names, trace.expert_names);
+    ASSERT_EQ(back.episodes.size(), 2u);
+    for (int i = 0; i < 2; ++i) {
+      const EpisodeTrace &a = trace.episodes[i], &b = back.episodes[i];
+      EXPECT_EQ(a.object, b.object);
+      EXPECT_EQ(a.episode, b.episode);
+      EXPECT_EQ(a.end, b.end);
+      EXPECT_EQ(a.scale, b.scale);
+      EXPECT_EQ(a.successes, b.successes);
+      EXPECT_EQ(a.joint_position, b.joint_position);
+      EXPECT_EQ(a.object_position, b.object_position);
+      EXPECT_EQ(a.object_rotation, b.object_rotation);
+      EXPECT_EQ(a.goal_rotation, b.goal_rotation);
+      EXPECT_EQ(a.angle, b.angle);
+      EXPECT_EQ(a.success, b.success);
+      EXPECT_EQ(a.action, b.action);
+      EXPECT_EQ(a.gate, b.gate);
+    }
+  }
+}
+
+TEST(Trace, AnotherFormatIsRefused) {
+  const std::string path = Path("not_a_trace.h5");
+  WriteEval(path, SampleEval(5), {"test", "", 1, {}});
+  EXPECT_THAT(Message([&] { ReadTrace(path); }), HasSubstr("expected format dexremoe.trace"));
+}
+
+TEST(PaperNumbers, TheTableHasAllMethodsSplitsAndMetrics) {
+  const auto numbers = ReadPaperNumbers("data/paper_tables.csv");
+  EXPECT_EQ(numbers.size(), 10u * 2 * 5);
+  const auto find = [&](const std::string& method, const std::string& split, const std::string& m) {
+    for (const PaperNumber& n : numbers)
+      if (n.method == method && n.split == split && n.metric == m) return n.value;
+    return double{NAN};
+  };
+  EXPECT_EQ(find("DexReMoE", "train", "s_mean"), 19.62);
+  EXPECT_EQ(find("MMoE", "ood", "s_worst5"), 8.67);
+  // In every row: worst five <= mean <= best five <= max, and min <= worst five.
+  for (const PaperNumber& n : numbers) {
+    EXPECT_LE(find(n.method, n.split, "s_min"), find(n.method, n.split, "s_worst5"));
+    EXPECT_LE(find(n.method, n.split, "s_worst5"), find(n.method, n.split, "s_mean"));
+    EXPECT_LE(find(n.method, n.split, "s_mean"), find(n.method, n.split, "s_best5"));
+    EXPECT_LE(find(n.method, n.split, "s_best5"), find(n.method, n.split, "s_max"));
+  }
+}
+
+TEST(PaperNumbers, UnknownMetricsAreNamed) {
+  const std::string path = Path("paper.csv");
+  WriteFile(path, "table,method,split,metric,value\n1,DR,train,s_medium,3\n");
+  EXPECT_THAT(Message([&] { ReadPaperNumbers(path); }), HasSubstr("s_medium"));
+  WriteFile(path, "table,method,split,metric,value\n1,DR,test,s_min,3\n");
+  EXPECT_THAT(Message([&] { ReadPaperNumbers(path); }), HasSubstr("found 'test'"));
+}
+
+TEST(Tables, PaperRowsStandBelowOursAtTheirToleranceOnly) {
+  const std::vector<MethodResults> methods = {{"Base", {SampleEval(5)}}, {"Ours", {SampleEval(9)}}};
+  const auto tables =
+      MakeTables(methods, ReadPaperNumbers("data/paper_tables.csv"), "1", {50, 1});
+  ASSERT_EQ(tables.size(), 4u);  // two splits, two tolerances
+  for (const ResultTable& table : tables) {
+    EXPECT_EQ(table.rows.size(), table.tolerance == 0.4 ? 12u : 2u);
+    EXPECT_EQ(table.rows[1].label, "Ours");
+    EXPECT_FALSE(table.rows[1].paper);
+    EXPECT_THAT(table.caption, HasSubstr(table.split == "train" ? "6 training" : "2 out-of"));
+    EXPECT_THAT(table.caption, HasSubstr("1 seed;"));
+    EXPECT_THAT(table.caption, HasSubstr("engine ode with 2 substeps"));
+  }
+  EXPECT_EQ(tables[0].rows[11].label, "DexReMoE");
+  EXPECT_EQ(tables[0].rows[11].values[4].value, 19.62);
+}
+
+TEST(Tables, MarkdownColumnsLineUp) {
+  const std::vector<MethodResults> methods = {{"Bäse", {SampleEval(5)}},
+                                              {"A much longer name", {SampleEval(9)}}};
+  const std::string text = MarkdownOf(MakeTables(methods, {}, "1", {50, 1}));
+  std::size_t width = 0, lines = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    const std::string line = text.substr(at, end - at);
+    at = end + 1;
+    if (line.empty() || line[0] != '|') {
+      width = 0;
+      continue;
+    }
+    std::size_t shown = 0;
+    for (const char c : line) shown += (c & 0xC0) != 0x80;
+    if (width == 0) width = shown;
+    EXPECT_EQ(shown, width) << line;
+    ++lines;
+  }
+  EXPECT_EQ(lines, 4u * 4);
+}
+
+TEST(Tables, LatexEscapesAndCsvIsATable) {
+  const std::vector<MethodResults> methods = {{"Base_1 & 5%", {SampleEval(5)}}};
+  const auto tables = MakeTables(methods, ReadPaperNumbers("data/paper_tables.csv"), "1", {50, 1});
+  const std::string latex = LatexOf(tables);
+  EXPECT_THAT(latex, HasSubstr("Base\\_1 \\& 5\\%"));
+  EXPECT_THAT(latex, HasSubstr("\\toprule"));
+  EXPECT_THAT(latex, HasSubstr("$\\bar S_{5-}$"));
+  const std::string path = Path("table.csv");
+  WriteFile(path, CsvOf(tables));
+  const CsvTable csv = CsvTable::Read(path);
+  EXPECT_EQ(csv.num_rows(), 4u * 8 + 2 * 10 * 5);
+  WriteFile(path, ObjectCsvOf(methods, {50, 1}));
+  const CsvTable objects = CsvTable::Read(path);
+  EXPECT_EQ(objects.num_rows(), 16u);  // eight objects at two tolerances
+  EXPECT_EQ(objects.Numbers("episodes")[0], 10);
+}
+
+TEST(Tables, SeedsOfAMethodArePooled) {
+  const EvalFile a = SampleEval(5, 1), b = SampleEval(9, 2);
+  const auto tables = MakeTables({{"Both", {a, b}}}, {}, "1", {50, 1});
+  EXPECT_THAT(tables[0].caption, HasSubstr("120 episodes a method, 2 seeds"));
+  double mean = 0;
+  for (int o = 0; o < 6; ++o)
+    mean += (a.runs[0].metrics.objects[o].values[0].value +
+             b.runs[0].metrics.objects[o].values[0].value) / 12;
+  EXPECT_NEAR(tables[0].rows[0].values[4].value, mean, 1e-12);
+}
+
+TEST(Tables, MethodsOfOtherObjectsOrEnginesAreRefused) {
+  EvalFile other = SampleEval(5);
+  other.objects[2].name = "stranger";
+  EXPECT_THAT(Message([&] { MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, "1", {1, 1}); }),
+              HasSubstr("B: expected the same train objects as A"));
+  other = SampleEval(5);
+  other.substeps = 4;
+  EXPECT_THAT(Message([&] { MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, "1", {1, 1}); }),
+              HasSubstr("substeps"));
+}
+
+TEST(LogRatios, AreCentredAndInvariantToScale) {
+  const std::vector<double> a = LogRatios({0.5f, 0.25f, 0.25f}, 3);
+  const std::vector<double> b = LogRatios({1.0f, 0.5f, 0.5f}, 3);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], 1e-12);
+  EXPECT_NEAR(a[0] + a[1] + a[2], 0, 1e-12);
+  EXPECT_NEAR(a[0] - a[1], std::log(2), 1e-12);
+  for (const double x : LogRatios({1, 0, 0}, 3)) EXPECT_TRUE(std::isfinite(x));
+}
+
+TEST(Embedding, ObjectsThatMixAlikeShareAClusterAndTheFileComesBack) {
+  // Two kinds of mixtures, four objects each, 20 turns of every object.
+  std::vector<float> weight;
+  std::vector<std::int32_t> row_object;
+  std::vector<EmbeddedObject> objects(8);
+  Rng rng(1, Stream::kTest);
+  for (int o = 0; o < 8; ++o) {
+    objects[o].name = "o" + std::to_string(o);
+    objects[o].category = "shoe";
+    for (int k = 0; k < 20; ++k) {
+      row_object.push_back(o);
+      std::array<double, 3> w = {std::exp(0.1 * rng.Normal() + (o < 4 ? 2 : 0)),
+                                 std::exp(0.1 * rng.Normal()),
+                                 std::exp(0.1 * rng.Normal() + (o < 4 ? 0 : 2))};
+      for (const double x : w) weight.push_back(static_cast<float>(x / (w[0] + w[1] + w[2])));
+    }
+  }
+  ThreadPool pool(2);
+  TsneOptions options;
+  options.iterations = 400;
+  const Embedding map = EmbedWeights(weight, 3, row_object, objects, options, 1, pool);
+  EXPECT_EQ(map.clusters, 2);
+  for (int o = 0; o < 8; ++o) {
+    EXPECT_EQ(map.objects[o].cluster, map.objects[o < 4 ? 0 : 4].cluster);
+    EXPECT_EQ(map.objects[o].expert, o < 4 ? 0 : 2);
+  }
+  EXPECT_NE(map.objects[0].cluster, map.objects[4].cluster);
+  EXPECT_GT(map.silhouette, 0.5);
+  EXPECT_GT(map.trustworthiness, 0.8);
+  const std::string path = Path("tsne.h5");
+  WriteEmbedding(path, map, {"test", "", 1, {}});
+  const Embedding back = ReadEmbedding(path);
+  EXPECT_EQ(back.position, map.position);
+  EXPECT_EQ(back.weight, map.weight);
+  EXPECT_EQ(back.row_object, map.row_object);
+  EXPECT_EQ(back.kl, map.kl);
+  EXPECT_EQ(back.objects[5].name, "o5");
+  EXPECT_EQ(back.objects[5].x, map.objects[5].x);
+}
+
+}  // namespace
+}  // namespace dexremoe
