@@ -17,6 +17,15 @@ quick: deps  ## meshes to tables, figures and films at small size (about 15 minu
 	+@$(MAKE) --no-print-directory EXPERIMENT=1 experiment
 	@printf '\nDone. Look at:\n'; printf '  %s\n' $(PRODUCTS)
 
+# The learning check: base policy against the untrained network on one cube.
+.PHONY: cube cube-products
+cube: deps  ## train on a single cube and compare with the untrained network (about 25 minutes)
+	+@$(MAKE) --no-print-directory build
+	$(BIN)/make_objects --recipes=data/shapes --out=meshes/shapes
+	+@$(MAKE) --no-print-directory EXPERIMENT=1 OBJECTS=meshes/shapes CONFIG=data/config/cube.toml \
+	  OUT=results/cube cube-products
+cube-products: $(OUT)/tables/cube.md $(OUT)/figures/base.png
+
 TABLES  := $(OUT)/tables/table1.md
 FIGURES := $(addprefix $(OUT)/figures/,curves.png objects.png parts.png per_object.png tsne.png \
   hand.png strip.png episode.mp4)
@@ -112,6 +121,9 @@ $(OUT)/tables/table1.md: $(EVAL_FILES) data/paper_tables.csv | $(BIN)/tabulate
 	$(BIN)/tabulate --eval=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" \
 	  --paper=data/paper_tables.csv --out=$(basename $@)
 
+$(OUT)/tables/cube.md: $(OUT)/eval/untrained.h5 $(OUT)/eval/base.h5 | $(BIN)/tabulate
+	$(BIN)/tabulate --eval=$(call commas,$^) --labels="Untrained,Base policy" --out=$(basename $@)
+
 $(OUT)/tsne.h5: $(OUT)/gate.h5 $(OUT)/shape_net.h5 | $(BIN)/embed_gate
 	$(BIN)/embed_gate $(COMMON) --workers=$(WORKERS) --gate=$< --net=$(OUT)/shape_net.h5 \
 	  --objects=$(OUT)/objects.csv --out=$@
@@ -122,6 +134,8 @@ CURVES := $(patsubst %,$(OUT)/curves/%.csv,base $(EXPERTS:%=expert_%) gate)
 $(OUT)/figures/curves.png: $(OUT)/gate.h5 | $(BIN)/plot
 	$(BIN)/plot --kind=curves --in=$(call commas,$(CURVES)) --labels="Base,Generalist,Airplane,Train,Animal,Gate" \
 	  --out=$(basename $@)
+$(OUT)/figures/base.png: $(OUT)/base.h5 | $(BIN)/plot
+	$(BIN)/plot --kind=curves --in=$(OUT)/curves/base.csv --labels="Base" --out=$(basename $@)
 $(OUT)/figures/per_object.png: $(EVAL_FILES) | $(BIN)/plot
 	$(BIN)/plot --kind=bars --in=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" --out=$(basename $@)
 $(OUT)/figures/tsne.png: $(OUT)/tsne.h5 | $(BIN)/plot
@@ -136,3 +150,13 @@ $(OUT)/figures/strip.png: $(OUT)/eval/gate.h5 | $(BIN)/render
 	$(BIN)/render --kind=strip --hand=$(HAND) --trace=$(OUT)/trace/gate.h5 --objects=$(OUT)/objects.csv --out=$@
 $(OUT)/figures/episode.mp4: $(OUT)/eval/gate.h5 | $(BIN)/render
 	$(BIN)/render --kind=video --hand=$(HAND) --trace=$(OUT)/trace/gate.h5 --objects=$(OUT)/objects.csv --out=$@
+
+# --- Publishing ---------------------------------------------------------------------------------
+
+.PHONY: publish
+publish:  ## copy the tables and figures of a finished run to results/tables and paper_figs
+	@mkdir -p results/tables paper_figs
+	cp $(OUT)/tables/table1.md $(OUT)/tables/table1.csv $(OUT)/tables/table1.tex results/tables/
+	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png curves.png per_object.png tsne.png strip.png) paper_figs/
+	@if [ -f results/cube/tables/cube.md ]; then cp results/cube/tables/cube.md results/tables/ && \
+	  cp results/cube/figures/base.png paper_figs/cube.png; fi

@@ -93,9 +93,7 @@ void Run(const EvaluateOptions& o, const Options& options) {
   EvalSetup setup{o.task, o.sim, LoadHand(o.hand), LoadObjects(entries, {}), o.seed};
   ThreadPool pool(o.workers);
   PolicyRunner runner(o.policy, setup.objects, pool);
-  const ActFunction act = [&](const ReorientBatch& batch, std::vector<float>& actions) {
-    runner.Act(batch.obs(), batch.phys(), batch.object(), actions);
-  };
+  const ActFunction act = PolicyActions(runner);
   if (o.task.goal_angle < 3.14159 || o.task.velocity_tolerance > 1)
     LogWarning("task.goal_angle {} and task.velocity_tolerance {} make the task easier than the "
                "paper's", o.task.goal_angle, o.task.velocity_tolerance);

@@ -2,6 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <cmath>
+
 #include "base/options.h"
 #include "hand/hand_model.h"
 
@@ -38,6 +40,9 @@ std::string SizeText(const Collider& c) {
   return "";
 }
 
+// Rounding leaves numbers like -1e-17, which would print as -0.00.
+double Clean(double x) { return std::abs(x) < 1e-9 ? 0 : x; }
+
 void PrintJoints(const HandModel& hand) {
   fmt::print("\n{:<8} {:<10} {:<10} {:>8} {:>8} {:>8} {:>8}  {}\n", "joint", "parent", "child",
              "lower", "upper", "torque", "speed", "axis in W at q = 0");
@@ -49,7 +54,7 @@ void PrintJoints(const HandModel& hand) {
     const Eigen::Vector3d axis = X_WL[j.child].q * j.axis;
     fmt::print("{:<8} {:<10} {:<10} {:>8.3f} {:>8.3f} {:>8.3f} {:>8.2f}  {:5.2f} {:5.2f} {:5.2f}\n",
                j.name, hand.links[j.parent].name, hand.links[j.child].name, j.lower, j.upper,
-               j.torque_limit, j.speed_limit, axis.x() + 0.0, axis.y() + 0.0, axis.z() + 0.0);
+               j.torque_limit, j.speed_limit, Clean(axis.x()), Clean(axis.y()), Clean(axis.z()));
   }
 }
 

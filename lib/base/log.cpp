@@ -76,8 +76,8 @@ void Progress::Draw(double done, std::string_view note, Clock::time_point now) {
   const double spent = std::chrono::duration<double>(now - start_).count();
   const double left =
       done > first_done_ ? spent * (total_ - done) / (done - first_done_) : NAN;
-  const std::string tail = fmt::format("{:3.0f} %  {} left  {}", 100 * fraction,
-                                       FormatDuration(left), note);
+  const std::string tail = fmt::format("{:3.0f} %  {} left{}{}", 100 * fraction,
+                                       FormatDuration(left), note.empty() ? "" : "  ", note);
   if (!terminal_) {
     LogInfo("{}: {}", label_, tail);
     return;

@@ -26,6 +26,15 @@ void PushObjects(ReorientBatch& batch, const std::vector<EpisodeJob>& jobs,
   }
 }
 
+// `rows` rows of `width`, filled up with copies of the first row.
+template <typename T>
+std::vector<T> Padded(const std::vector<T>& from, std::size_t rows, std::size_t width) {
+  std::vector<T> to = from;
+  to.reserve(rows * width);
+  while (to.size() < rows * width) to.insert(to.end(), from.begin(), from.begin() + width);
+  return to;
+}
+
 }  // namespace
 
 void EvalOptions::Register(Options& options) {
@@ -45,6 +54,18 @@ std::vector<EpisodeJob> MakeJobs(int objects, int episodes) {
   for (int object = 0; object < objects; ++object)
     for (int e = 0; e < episodes; ++e) jobs.push_back({object, static_cast<std::uint64_t>(e)});
   return jobs;
+}
+
+ActFunction PolicyActions(PolicyRunner& runner) {
+  return [&runner](const ReorientBatch& batch, std::vector<float>& actions) {
+    constexpr std::size_t kBlock = 64;  // rows; from 16 on every row is computed alike
+    const std::size_t rows = (batch.object().size() + kBlock - 1) / kBlock * kBlock;
+    const std::size_t used = actions.size();
+    runner.Act(Padded(batch.obs(), rows, runner.obs_size()),
+               Padded(batch.phys(), rows, runner.phys_size()), Padded(batch.object(), rows, 1),
+               actions);
+    actions.resize(used);
+  };
 }
 
 std::vector<EpisodeRecord> RunJobs(ReorientBatch& batch, const ActFunction& act,

@@ -99,11 +99,36 @@ std::string CurveData(const std::vector<Curve>& curves, const std::string& x,
   return data;
 }
 
-std::string PanelScript(const std::string& column, std::size_t panel, std::size_t runs) {
+// Distance of tics: 1, 2 or 5 times a power of ten, at most `most` of them over all runs' values.
+double TicStep(const std::vector<Curve>& curves, const std::string& column, int most) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const Curve& curve : curves)
+    for (const double value : curve.table.Numbers(column)) {
+      if (!std::isfinite(value)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  const double range = AxisOf(column).factor * (high - low);
+  if (!(range > 0)) return 0;
+  const double power = std::pow(10, std::floor(std::log10(range / most)));
+  for (const double step : {1, 2, 5})
+    if (step * power * most >= range) return step * power;
+  return 10 * power;
+}
+
+std::string TicsScript(const char* axis, double step) {
+  return step > 0 ? fmt::format("set {}tics {:.6g}\n", axis, step)
+                  : fmt::format("set {}tics autofreq\n", axis);
+}
+
+std::string PanelScript(const std::vector<Curve>& curves, const std::string& column,
+                        std::size_t panel) {
   const Axis axis = AxisOf(column);
-  std::string script = fmt::format("set title {} offset 0,-0.6\n{} logscale y\nset format y \"{}\"\nplot ",
+  const std::size_t runs = curves.size();
+  std::string script = fmt::format("set title {} offset 0,-0.6\n{} logscale y\nset format y \"{}\"\n",
                                    GnuplotQuoted(axis.label), axis.log ? "set" : "unset",
                                    axis.log ? "%.0e" : "%g");
+  script += TicsScript("y", axis.log ? 0 : TicStep(curves, column, 6)) + "plot ";
   for (std::size_t r = 0; r < runs; ++r)
     script += fmt::format("{}data index {} using 1:{} with lines lw 0.5 lc rgb \"{}\"",
                           r > 0 ? ", \\\n  " : "", r, 2 * panel + 2,
@@ -146,12 +171,13 @@ Figure CurvesFigure(const std::vector<Curve>& curves, const std::string& x,
       "set multiplot layout {},{} margins {:.4f},{:.4f},{:.4f},{:.4f} spacing "
       "{:.4f},{:.4f}\n"
       "unset key\nset grid lc rgb \"#D8D8D8\" lw 0.5 lt 1\nset border 3 lw 0.7\nset tics nomirror "
-      "out scale 0.5\nset xtics autofreq\nset xrange [*:*]\nset yrange [*:*]\nset autoscale\n"
+      "out scale 0.5\nset xrange [*:*]\nset yrange [*:*]\nset autoscale\n"
       "set xlabel {} offset 0,0.5\n",
       down, across, 1.25 / figure.width, 1 - 0.35 / figure.width, bottom, top, 1.35 / figure.width,
       1.75 / figure.height, GnuplotQuoted(AxisOf(x).label));
+  figure.script += TicsScript("x", TicStep(curves, x, 5));
   for (std::size_t p = 0; p < columns.size(); ++p)
-    figure.script += PanelScript(columns[p], p, curves.size());
+    figure.script += PanelScript(curves, columns[p], p);
   figure.script += LegendScript(curves) + "unset multiplot\nreset\n";
   return figure;
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMostNames = 30;  // objects; beyond that they are numbered
 constexpr double kMap = 12.5;           // cm, side of the map
 constexpr double kMarkerRadius = 0.1;   // cm
-constexpr double kLetterWidth = 0.12;  // cm, of a label
+constexpr double kLetterWidth = 0.136;  // cm, of a label
 
 // The group of every object, and what each group is called.
 struct Groups {

@@ -9,8 +9,6 @@
 namespace dexremoe {
 namespace {
 
-constexpr int kPhysScale = 5;  // e_phys: mass 1, centre of mass 3, friction 1, scale 1, ...
-
 template <typename T, typename U>
 void AppendRow(std::vector<T>& into, const std::vector<U>& from, int row, int width) {
   for (int k = 0; k < width; ++k)
@@ -21,7 +19,7 @@ void RecordRow(const ReorientBatch& batch, const std::vector<float>& actions,
                const std::vector<float>& gates, int env, EpisodeTrace& trace) {
   const SimState& state = batch.sim_state();
   const int joints = batch.num_joints();
-  if (trace.length() == 0) trace.scale = batch.phys()[env * kPhysSize + kPhysScale];
+  if (trace.length() == 0) trace.scale = batch.physics(env).scale;
   AppendRow(trace.joint_position, state.joint_position, env, joints);
   AppendRow(trace.object_position, state.object_position, env, 3);
   AppendRow(trace.object_rotation, state.object_rotation, env, 4);

@@ -125,6 +125,24 @@ std::vector<int> MergeEqualRows(const std::vector<double>& x, int n, int d,
   return index;
 }
 
+// Attraction and repulsion (see TsneGradient) of `size` points on the point (u, v); returns the sum
+// of t. A block's arrays stay in the first-level cache.
+constexpr int kBlock = 512;
+
+double AddForces(const float* p, float u, float v, const float* us, const float* vs, int size,
+                 double* force) {
+  using Block = Eigen::Array<float, Eigen::Dynamic, 1, 0, kBlock, 1>;
+  using Input = Eigen::Map<const Eigen::ArrayXf>;
+  const Block du = u - Input(us, size), dv = v - Input(vs, size);
+  const Block t = (1 + du * du + dv * dv).inverse();
+  const Block w = Input(p, size) * t;
+  force[0] += static_cast<double>((w * du).sum());
+  force[1] += static_cast<double>((w * dv).sum());
+  force[2] += static_cast<double>((t * t * du).sum());
+  force[3] += static_cast<double>((t * t * dv).sum());
+  return static_cast<double>(t.sum());
+}
+
 }  // namespace
 
 void TsneOptions::Register(Options& options) {
@@ -155,7 +173,9 @@ std::vector<float> Affinities(const std::vector<double>& x, int n, int d, double
         }
       }
       ConditionalRow(d2, i, perplexity, row);
-      std::copy(row.begin(), row.end(), conditional.begin() + i * size);
+      // Far points count nothing; their denormal numbers would only slow the sums down.
+      for (std::size_t j = 0; j < size; ++j)
+        conditional[i * size + j] = row[j] < 1e-30 ? 0.0f : static_cast<float>(row[j]);
     }
   });
   ForRows(n, pool, [&](int, int begin, int end) {
@@ -172,22 +192,17 @@ void TsneGradient(const std::vector<float>& p, const std::vector<double>& y, int
   // t = 1 / (1 + |y_i - y_j|^2); the normaliser of Q is known only at its end.
   const Eigen::Map<const Eigen::Array2Xd> points(y.data(), 2, n);
   const Eigen::ArrayXf u = points.row(0).cast<float>(), v = points.row(1).cast<float>();
-  Eigen::Array4Xd forces(4, n);  // attraction u, v; repulsion u, v
+  Eigen::Array4Xd forces = Eigen::Array4Xd::Zero(4, n);  // attraction u, v; repulsion u, v
   std::vector<double> normaliser(kChunks, 0.0);
   ForRows(n, pool, [&](int chunk, int begin, int end) {
-    Eigen::ArrayXf du(n), dv(n), t(n), w(n);
     for (int i = begin; i < end; ++i) {
-      const Eigen::Map<const Eigen::ArrayXf> row(p.data() + static_cast<std::size_t>(i) * n, n);
-      du = u[i] - u;
-      dv = v[i] - v;
-      t = (1 + du * du + dv * dv).inverse();
-      normaliser[chunk] += static_cast<double>(t.sum()) - 1;  // without j = i
-      w = row * t;
-      forces(0, i) = (w * du).sum();
-      forces(1, i) = (w * dv).sum();
-      w = t * t;
-      forces(2, i) = (w * du).sum();
-      forces(3, i) = (w * dv).sum();
+      const float* row = p.data() + static_cast<std::size_t>(i) * n;
+      normaliser[chunk] -= 1;  // j = i does not count
+      for (int j = 0; j < n; j += kBlock) {
+        const int size = std::min(kBlock, n - j);
+        normaliser[chunk] += AddForces(row + j, u[i], v[i], u.data() + j, v.data() + j, size,
+                                       forces.data() + 4 * i);
+      }
     }
   });
   double z = 0;

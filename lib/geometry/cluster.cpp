@@ -267,7 +267,8 @@ void MergeClusters(std::size_t most, double free_volume, double reach,
   const auto cost = [&](const Cluster& a, const Cluster& b) {
     if (!Near(a, b, reach)) return std::numeric_limits<double>::infinity();
     const auto hull = SummariseHull(corners(a, b));
-    return (hull ? hull->volume : 0) - a.hull_volume - b.hull_volume;
+    const double before = a.hull_volume + b.hull_volume - SharedVolume(a.hull, b.hull);
+    return (hull ? hull->volume : 0) - before;
   };
   std::vector<std::vector<double>> costs(clusters.size());
   for (std::size_t i = 0; i < clusters.size(); ++i)

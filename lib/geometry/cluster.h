@@ -28,9 +28,9 @@ Cluster MakeCluster(const VoxelSolid& solid, std::vector<int> voxels);
 // NOTE(paper): V-HACD's third term, which favours cuts across an axis of revolution, is left out.
 std::vector<Cluster> CutBest(const VoxelSolid& solid, const Cluster& cluster, double balance);
 
-// Joins the pair whose common hull adds least, until at most `most` are left and no joint is
-// nearly free (adds less than `free_volume`). Pairs are tried when their bounding boxes are within
-// `reach` of each other.
+// Joins the pair whose common hull adds least to the union of the two hulls, until at most `most`
+// are left and no joint is nearly free (adds less than `free_volume`). Pairs are tried when their
+// bounding boxes are within `reach` of each other.
 void MergeClusters(std::size_t most, double free_volume, double reach,
                    std::vector<Cluster>& clusters);
 

@@ -18,11 +18,13 @@ constexpr std::size_t kMostClusters = 96;
 // more are taken back.
 constexpr double kNegligible = 0.05;
 
+// Voxels need a surface without openings; several or crossing shells do no harm.
 TriMesh Closed(const TriMesh& mesh, const std::string& label) {
-  const Topology topology = TopologyOf(mesh);
-  const bool usable =
-      topology.open_edges == 0 && topology.flipped_edges == 0 && MassPropertiesOf(mesh).volume > 0;
-  return usable ? mesh : MakeClosedShell(mesh, {}, label).mesh;
+  TriMesh welded = Weld(mesh, 1e-6 * BoundsOf(mesh).Size().maxCoeff());
+  const Topology topology = TopologyOf(welded);
+  const bool usable = topology.open_edges == 0 && topology.flipped_edges == 0 &&
+                      MassPropertiesOf(welded).volume > 0;
+  return usable ? welded : MakeClosedShell(mesh, {}, label).mesh;
 }
 
 // Always cuts the cluster with the largest excess.

@@ -31,7 +31,8 @@ struct DecompositionQuality {
   double volume_ratio = 0;     // summed part volume / mesh volume
   double hausdorff_ratio = 0;  // symmetric Hausdorff distance between the mesh's surface and the
                                // surface of the parts' union / diagonal of the mesh's bounding box;
-                               // sampled, so a slight underestimate
+                               // sampled, so a slight underestimate; slits inside the solid
+                               // thinner than 1 % of the diagonal do not count
 };
 DecompositionQuality QualityOf(const TriMesh& mesh, const ConvexParts& parts);
 

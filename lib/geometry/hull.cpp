@@ -202,4 +202,22 @@ double DistanceOutside(const TriMesh& hull, const Eigen::Vector3d& point) {
   return distance;
 }
 
+double SharedVolume(const TriMesh& a, const TriMesh& b) {
+  const Box3 box_a = BoundsOf(a), box_b = BoundsOf(b);
+  const Box3 common = {box_a.min.cwiseMax(box_b.min), box_a.max.cwiseMin(box_b.max)};
+  if (!((common.max - common.min).minCoeff() > 0)) return 0;
+  constexpr int kSamples = 200;
+  constexpr double kRatio = 1.22074408460575947536;  // root of x^4 = x + 1: the R3 sequence
+  const Eigen::Vector3d step(1 / kRatio, 1 / (kRatio * kRatio), 1 / (kRatio * kRatio * kRatio));
+  Eigen::Vector3d u = Eigen::Vector3d::Constant(0.5);
+  int shared = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    u += step;
+    u -= u.array().floor().matrix();
+    const Eigen::Vector3d p = common.min + common.Size().cwiseProduct(u);
+    shared += DistanceOutside(a, p) <= 0 && DistanceOutside(b, p) <= 0;
+  }
+  return common.Size().prod() * shared / kSamples;
+}
+
 }  // namespace dexremoe

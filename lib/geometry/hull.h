@@ -32,4 +32,8 @@ std::optional<HullSummary> SummariseHull(const std::vector<Eigen::Vector3d>& poi
 // Largest distance that `point` lies outside a face plane of `hull`; negative inside.
 double DistanceOutside(const TriMesh& hull, const Eigen::Vector3d& point);
 
+// Volume that two convex meshes share, by a fixed set of sample points: right to a few percent of
+// the overlap of their bounding boxes.
+double SharedVolume(const TriMesh& a, const TriMesh& b);
+
 }  // namespace dexremoe

@@ -11,8 +11,9 @@ namespace dexremoe {
 struct Voxel {
   std::array<int, 3> cell;  // indices along x, y, z
   double volume = 0;        // of the solid within the voxel, m^3
-  // Corners of the surface pieces within the voxel and corners of the voxel within the solid: points
-  // [first, first + count); the extreme ones in 26 directions come first. An inner voxel has none.
+  // Corners of the surface pieces within the voxel and corners of the voxel within the solid:
+  // points [first, first + count); the extreme ones in 26 directions come first. An inner voxel has
+  // none.
   int first = 0, count = 0, extreme = 0;
   bool inner() const { return count == 0; }
 };

@@ -52,9 +52,9 @@ class Rows {
   void Weight(const std::string& name, float weight, const Color& color) {
     y_ += kWeightRow * u_;
     const TextStyle style{10.5 * u_, ink::kFaint};
-    const double bar = 52 * u_, value = 29 * u_, top = y_ - 6.5 * u_;
+    const double bar = 37 * u_, value = 29 * u_, top = y_ - 6.5 * u_;
     const double left = x_ + Inner() - value - bar;
-    canvas_.Text(x_, y_, canvas_.fonts().Fit(name, style, Inner() - value - bar - 6 * u_), style);
+    canvas_.Text(x_, y_, canvas_.fonts().Fit(name, style, Inner() - value - bar - 4 * u_), style);
     canvas_.Box(left, top, bar, kBar * u_, ink::kLine, kBar * u_ / 2);
     const double length = std::clamp(double(weight), 0.0, 1.0) * bar;
     if (length > 0.5) canvas_.Box(left, top, length, kBar * u_, color, kBar * u_ / 2);

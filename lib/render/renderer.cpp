@@ -11,19 +11,6 @@
 
 namespace dexremoe {
 
-// Everything that the passes of one image need.
-struct Renderer::Frame {
-  const Scene* scene = nullptr;
-  double aspect = 1, tan_y = 1;
-  Eigen::Matrix4d view, projection;              // W -> camera -> clip
-  Eigen::Matrix4d light_view, light_projection;  // camera -> light -> clip
-  Eigen::Vector3d light;                         // towards it, camera axes
-  Sphere bounds;                                 // of the opaque items, W
-  std::vector<const Item*> opaque, ghosts;       // ghosts from far to near
-  std::optional<Item> floor;                     // the unit square, placed
-  double feature = 0;                            // m, the size of soft edges and of occlusion
-};
-
 namespace {
 
 TriMesh UnitSquare() {
@@ -40,31 +27,6 @@ Eigen::Matrix4d MatrixOf(const Item& item) {
   matrix.topLeftCorner<3, 3>() = item.X_WM.q.toRotationMatrix() * item.scale;
   matrix.topRightCorner<3, 1>() = item.X_WM.p;
   return matrix;
-}
-
-// Looks along the light at a sphere (camera axes): an orthographic cube around it.
-Eigen::Matrix4d LightView(const Eigen::Vector3d& light, const Eigen::Vector3d& center) {
-  const Eigen::Vector3d side = light.unitOrthogonal();
-  Eigen::Matrix3d axes;
-  axes << side, light.cross(side), light;
-  Eigen::Matrix4d view = Eigen::Matrix4d::Identity();
-  view.topLeftCorner<3, 3>() = axes.transpose();
-  view.topRightCorner<3, 1>() = -axes.transpose() * center;
-  return view;
-}
-
-Sphere Around(const std::vector<Sphere>& spheres) {
-  Box3 box;
-  for (const Sphere& s : spheres) {
-    box.Extend(s.center - Eigen::Vector3d::Constant(s.radius));
-    box.Extend(s.center + Eigen::Vector3d::Constant(s.radius));
-  }
-  Sphere around;
-  if (spheres.empty()) return around;
-  around.center = box.Center();
-  for (const Sphere& s : spheres)
-    around.radius = std::max(around.radius, (s.center - around.center).norm() + s.radius);
-  return around;
 }
 
 }  // namespace
@@ -119,7 +81,8 @@ Image Renderer::Draw(const Scene& scene, const Camera& camera, int width, int he
   DEX_CHECK_GT(std::min(width, height), 0);
   context_.MakeCurrent();
   PrepareTargets(width, height);
-  const Frame frame = MakeFrame(scene, camera, width, height);
+  const Frame frame = MakeFrame(scene, camera, double(width) / height,
+                                [this](const Item& item) { return Bounds(item); });
   gl_.Enable(GL_DEPTH_TEST);
   DrawShadowMap(frame);
   DrawGeometry(frame);
@@ -143,51 +106,6 @@ void Renderer::PrepareTargets(int width, int height) {
   occlusion_map_ = make(TargetKind::kByteMap, 1);
   blurred_map_ = make(TargetKind::kByteMap, 1);
   image_ = make(TargetKind::kFloatImage, s);
-}
-
-Renderer::Frame Renderer::MakeFrame(const Scene& scene, const Camera& camera, int width,
-                                    int height) const {
-  Frame frame;
-  frame.scene = &scene;
-  frame.aspect = double(width) / height;
-  frame.tan_y = std::tan(camera.fov_y / 2);
-  frame.view = camera.View();
-  frame.light = scene.light.normalized();
-  std::vector<Sphere> all, solid;
-  for (const Item& item : scene.items) {
-    const bool opaque = item.material.opacity >= 1;
-    (opaque ? frame.opaque : frame.ghosts).push_back(&item);
-    all.push_back(Bounds(item));
-    if (opaque) solid.push_back(all.back());
-  }
-  const auto distance = [&](const Item* item) {
-    return (Bounds(*item).center - camera.eye).norm();
-  };
-  std::stable_sort(frame.ghosts.begin(), frame.ghosts.end(),
-                   [&](const Item* a, const Item* b) { return distance(a) > distance(b); });
-  frame.bounds = Around(solid);
-  if (scene.floor) {
-    frame.floor = Item{};
-    frame.floor->X_WM.p = scene.floor->point;
-    frame.floor->X_WM.q =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), scene.floor->normal);
-    frame.floor->scale = scene.floor->radius;
-    all.push_back({scene.floor->point, 1.5 * scene.floor->radius});
-  }
-  // Soft edges and occlusion follow the size of the picture, not of the scene: at arm's length of
-  // the camera a feature is a fifteenth of the image's height.
-  frame.feature = frame.tan_y * (camera.eye - camera.target).norm() / 7.5;
-  const Sphere whole = Around(all);
-  const double middle = (whole.center - camera.eye).dot(-camera.Axes().col(2));
-  const double far = std::max(middle + whole.radius, 1e-3) * 1.01;
-  const double near = std::max(middle - whole.radius, far * 0.01) * 0.99;
-  frame.projection = camera.Projection(frame.aspect, near, far);
-  const double r = std::max(frame.bounds.radius, 1e-6) * 1.02;
-  const Eigen::Vector3d center = (frame.view * frame.bounds.center.homogeneous()).head<3>();
-  frame.light_view = LightView(frame.light, center);
-  // Orthographic cube [-r, r]^3 around the opaque items; farther from the light is deeper.
-  frame.light_projection = Eigen::Vector4d(1 / r, 1 / r, -1 / r, 1).asDiagonal();
-  return frame;
 }
 
 void Renderer::DrawMesh(const Program& program, const Frame& frame, const Item& item,
@@ -274,8 +192,7 @@ void Renderer::DrawSurfaces(const Frame& frame) const {
       (Eigen::Matrix4d() << 0.5, 0, 0, 0.5, 0, 0.5, 0, 0.5, 0, 0, 0.5, 0.5, 0, 0, 0, 1).finished();
   surface_.Set("light_from_camera",
                Eigen::Matrix4d(to_unit * frame.light_projection * frame.light_view));
-  const double extent = 2 / frame.light_projection(0, 0);
-  surface_.Set("light_extent", extent);
+  surface_.Set("light_extent", frame.light_extent);
   surface_.Set("supersample", double(options_.supersample));
   surface_.Set("light", frame.light);
   surface_.Set("up", Eigen::Vector3d(0, 1, 0));

@@ -8,6 +8,7 @@
 #include "io/png.h"
 #include "render/camera.h"
 #include "render/context.h"
+#include "render/frame.h"
 #include "render/gpu_mesh.h"
 #include "render/program.h"
 #include "render/scene.h"
@@ -43,9 +44,7 @@ class Renderer {
   const RenderContext& context() const { return context_; }
 
  private:
-  struct Frame;  // what the passes of one image share
   void PrepareTargets(int width, int height);
-  Frame MakeFrame(const Scene& scene, const Camera& camera, int width, int height) const;
   void DrawMesh(const Program& program, const Frame& frame, const Item& item,
                 const Eigen::Matrix4d& projection, const Eigen::Matrix4d& camera_from_world) const;
   void DrawShadowMap(const Frame& frame) const;

@@ -48,7 +48,6 @@ const char kOcclusionFragment[] = R"(#version 330 core
 in vec2 uv;
 uniform sampler2D geometry;
 uniform vec2 tangent;    // half the field of view's width and height at depth 1
-uniform float focal;     // uv per radius at depth 1, vertical
 uniform float radius;    // m
 out float occlusion;
 const int kSamples = 20;
@@ -124,8 +123,7 @@ uniform sampler2D shadow_map;
 uniform sampler2D geometry;
 uniform sampler2D occlusion_map;
 uniform mat4 light_from_camera;  // to [0, 1]^3
-uniform float light_extent;      // m across the shadow map
-uniform float light_depth;       // m along it
+uniform float light_extent;      // m across the shadow map and along it
 uniform float supersample;
 uniform vec3 light;
 uniform vec3 up;
@@ -158,7 +156,7 @@ float Lit(vec3 normal) {
     if (depth < s.z) { blockers += 1.0; sum += depth; }
   }
   if (blockers < 0.5) return 1.0;
-  float gap = (s.z - sum / blockers) * light_depth;
+  float gap = (s.z - sum / blockers) * light_extent;
   float soft = clamp(0.14 * gap, 0.03 * feature, 0.8 * feature) / light_extent;
   float lit = 0.0;
   for (int i = 0; i < 16; ++i)

@@ -103,6 +103,45 @@ TEST_F(Files, NoFacesInAPlyIsAnError) {
             "end_header\n0 0 0\n1 0 0\n0 1 0\n");
 }
 
+TEST_F(Files, PlyReadsTextPolygonsAndOtherElements) {
+  WriteFile(Path("t.ply"),
+            "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nelement vertex 4\r\n"
+            "property float x\r\nproperty float y\r\nproperty float z\r\nproperty uchar red\r\n"
+            "element face 1\r\nproperty list uchar int vertex_index\r\n"
+            "element edge 1\r\nproperty int a\r\nend_header\r\n"
+            "0 0 0 9\r\n1 0 0 9\r\n1 1 0 9\r\n0 1 0 9\r\n4 0 1 2 3\r\n7\r\n");
+  const TriMesh mesh = LoadMesh(Path("t.ply"));
+  EXPECT_EQ(mesh.triangles, (std::vector<std::array<int, 3>>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(mesh.vertices[2], Eigen::Vector3d(1, 1, 0));
+}
+
+TEST_F(Files, BinaryPlyMayStartWithALineEnd) {
+  // 0x0a as the first data byte belongs to the first coordinate.
+  std::string bytes =
+      "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty short x\nproperty short y\n"
+      "property short z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
+  bytes += std::string("\x0a\x0d\0\0\0\0\0\1\0\0\0\0\0\0\0\1\0\0\3\0\1\2", 22);
+  WriteFile(Path("t.ply"), bytes);
+  EXPECT_EQ(LoadMesh(Path("t.ply")).vertices[0], Eigen::Vector3d(0x0a0d, 0, 0));
+}
+
+TEST_F(Files, BadPlyNamesTheField) {
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n";
+  const std::string body =
+      "property float y\nproperty float z\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+  const auto has = [](const std::string& text, const char* part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  has(LoadError("a.ply", head + body + "3 0 1 5\n"), "indices in 0..2, found 5");
+  has(LoadError("b.ply", head + body), "1 rows of 'face', found 0");
+  has(LoadError("c.ply", head + body + "3 0 one 2\n"), "expected a number, found 'one'");
+  has(LoadError("d.ply", "ply\nformat funny 1.0\n" + body), "found 'funny'");
+  has(LoadError("e.ply", head + "property real q\n" + body), "found 'real'");
+  has(LoadError("f.ply", "ply\nformat ascii 1.0\n"), "end_header");
+  has(LoadError("g.ply", "polygon\n"), "first line 'ply'");
+}
+
 ObjectMesh SampleObject() {
   ObjectMesh object = MakeObject(ElbowMesh(), {}, "elbow");
   object.name = "elbow";

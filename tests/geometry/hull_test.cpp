@@ -66,6 +66,14 @@ TEST(ConvexHull, KeepsTheVertexLimitAndStaysClose) {
   EXPECT_NEAR(MassPropertiesOf(*ConvexHull(grid, {8, 0})).volume, 64, 1e-9);
 }
 
+TEST(SharedVolume, OfBoxes) {
+  const TriMesh a = BoxMesh({0, 0, 0}, {2, 2, 2});
+  EXPECT_NEAR(SharedVolume(a, BoxMesh({1, 0, 0}, {4, 2, 2})), 4, 1e-9);
+  EXPECT_NEAR(SharedVolume(a, BoxMesh({0.5, 0.5, 0.5}, {1, 1, 1})), 0.125, 1e-9);
+  EXPECT_EQ(SharedVolume(a, BoxMesh({2, 0, 0}, {4, 2, 2})), 0);
+  EXPECT_NEAR(SharedVolume(a, SphereMesh(1, 24)), std::numbers::pi / 6, 0.05);
+}
+
 TEST(ConvexHull, OfFlatPointsIsEmptyOrThickened) {
   std::vector<Eigen::Vector3d> square = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0.5, 0.5, 1}};
   EXPECT_FALSE(ConvexHull(square));
