@@ -15,6 +15,9 @@ SEED ?= 1#                         ## seed of everything random
 CONFIG ?= data/config/quick.toml#  ## sizes and hyper-parameters of all stages
 OUT ?= results/quick$(if $(filter builtin,$(OBJECTS)),,-$(notdir $(OBJECTS:%/=%)))#  ## folder of the run
 
+# Recursive calls use all processors unless the user gave -j.
+JOBS = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(shell nproc))
+
 comma := ,
 empty :=
 space := $(empty) $(empty)

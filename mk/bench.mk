@@ -10,7 +10,7 @@ $(BUILD)/bench/bench: $(BENCH_SOURCES:%.cpp=$(BUILD)/obj/%.o) $(ARCHIVES)
 
 .PHONY: bench
 bench: deps  ## measure physics, networks and learning; writes results/bench/
-	+@$(MAKE) --no-print-directory $(BUILD)/bench/bench
+	+@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench/bench
 	@mkdir -p results/bench
 	@$(BUILD)/bench/bench --benchmark_repetitions=3 --benchmark_report_aggregates_only=true \
 	  --benchmark_out=results/bench/bench.json --benchmark_out_format=json \

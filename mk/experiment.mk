@@ -13,16 +13,16 @@ SIM    := --sim.engine=$(ENGINE) --hand=$(HAND) --workers=$(WORKERS)
 
 .PHONY: quick
 quick: deps  ## meshes to tables, figures and films at small size (about 15 minutes)
-	+@$(MAKE) --no-print-directory build
-	+@$(MAKE) --no-print-directory EXPERIMENT=1 experiment
+	+@$(MAKE) $(JOBS) --no-print-directory build
+	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 experiment
 	@printf '\nDone. Look at:\n'; printf '  %s\n' $(PRODUCTS)
 
 # The learning check: base policy against the untrained network on one cube.
 .PHONY: cube cube-products
 cube: deps  ## train on a single cube and compare with the untrained network (about 25 minutes)
-	+@$(MAKE) --no-print-directory build
+	+@$(MAKE) $(JOBS) --no-print-directory build
 	$(BIN)/make_objects --recipes=data/shapes --out=meshes/shapes
-	+@$(MAKE) --no-print-directory EXPERIMENT=1 OBJECTS=meshes/shapes CONFIG=data/config/cube.toml \
+	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 OBJECTS=meshes/shapes CONFIG=data/config/cube.toml \
 	  OUT=results/cube cube-products
 cube-products: $(OUT)/tables/cube.md $(OUT)/figures/base.png
 
@@ -149,7 +149,7 @@ $(OUT)/figures/hand.png: $(HAND) $(OUT)/settings.txt | $(BIN)/render
 $(OUT)/figures/strip.png: $(OUT)/eval/gate.h5 | $(BIN)/render
 	$(BIN)/render --kind=strip --hand=$(HAND) --trace=$(OUT)/trace/gate.h5 --objects=$(OUT)/objects.csv --out=$@
 $(OUT)/figures/episode.mp4: $(OUT)/eval/gate.h5 | $(BIN)/render
-	$(BIN)/render --kind=video --hand=$(HAND) --trace=$(OUT)/trace/gate.h5 --objects=$(OUT)/objects.csv --out=$@
+	$(BIN)/render --kind=video --last=299 --hand=$(HAND) --trace=$(OUT)/trace/gate.h5 --objects=$(OUT)/objects.csv --out=$@
 
 # --- Publishing ---------------------------------------------------------------------------------
 

@@ -23,8 +23,8 @@ export DEX_REAL_HAND := $(if $(filter data/hand/gx11.urdf,$(HAND)),,$(HAND))
 .PHONY: test test-slow test-programs
 test-programs: build $(TEST_PROGRAMS)
 test: deps  ## compile and run the fast tests
-	+@$(MAKE) --no-print-directory test-programs
+	+@$(MAKE) $(JOBS) --no-print-directory test-programs
 	@tests/run.sh '-*Slow*' $(TEST_PROGRAMS)
 test-slow: deps  ## compile and run the slow tests
-	+@$(MAKE) --no-print-directory test-programs
+	+@$(MAKE) $(JOBS) --no-print-directory test-programs
 	@tests/run.sh '*Slow*' $(TEST_PROGRAMS)

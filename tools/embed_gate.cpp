@@ -105,9 +105,9 @@ void Run(const EmbedOptions& o, const Options& options) {
     Fail("{}: expected a mixture with a gate, found kind {}", o.gate, runner.kind());
   const Turned turned = DescribeAll(o, entries, pool);
   Progress progress("t-SNE", o.tsne.iterations);
-  const Embedding map = EmbedWeights(runner.WeightsOf(turned.feature, turned.category),
-                                     runner.gates(), turned.object, turned.objects, o.tsne, o.seed,
-                                     pool, [&](int done) { progress.Update(done); });
+  const Embedding map =
+      EmbedWeights(runner.WeightsOf(turned.feature, turned.category), runner.gates(), turned.object,
+                   turned.objects, o.tsne, o.seed, pool, [&](int done) { progress.Update(done); });
   progress.Finish();
   WriteEmbedding(o.out, map, provenance);
   std::printf("%zu rows of %zu objects (%d distinct), %d experts\n", map.row_object.size(),

@@ -81,7 +81,8 @@ void RecordTrace(const EvaluateOptions& o, const EvalSetup& setup, const EvalRun
   trace.control_rate = setup.sim.control_rate;
   trace.tolerance = run.tolerance;
   for (const Joint& joint : setup.hand.joints) trace.joint_names.push_back(joint.name);
-  for (int e = 0; e < runner.gates(); ++e) trace.expert_names.push_back(fmt::format("expert {}", e + 1));
+  for (int e = 0; e < runner.gates(); ++e)
+    trace.expert_names.push_back(fmt::format("expert {}", e + 1));
   trace.episodes = RecordEpisodes(setup, o.eval, run, jobs, act, runner.GateWeights(), pool);
   WriteTrace(o.trace, trace, provenance);
   LogInfo("{}: {} episodes", o.trace, trace.episodes.size());
@@ -95,14 +96,15 @@ void Run(const EvaluateOptions& o, const Options& options) {
   PolicyRunner runner(o.policy, setup.objects, pool);
   const ActFunction act = PolicyActions(runner);
   if (o.task.goal_angle < 3.14159 || o.task.velocity_tolerance > 1)
-    LogWarning("task.goal_angle {} and task.velocity_tolerance {} make the task easier than the "
-               "paper's", o.task.goal_angle, o.task.velocity_tolerance);
+    LogWarning(
+        "task.goal_angle {} and task.velocity_tolerance {} make the task easier than the "
+        "paper's",
+        o.task.goal_angle, o.task.velocity_tolerance);
   EvalFile file = DescribeEval(o, setup);
   file.runs = Evaluate(setup, o.eval, act, pool);
   WriteEval(o.out, file, provenance);
   std::fputs(ReportOf(file).c_str(), stdout);
-  if (!o.trace.empty())
-    RecordTrace(o, setup, file.runs.front(), runner, act, pool, provenance);
+  if (!o.trace.empty()) RecordTrace(o, setup, file.runs.front(), runner, act, pool, provenance);
 }
 
 }  // namespace

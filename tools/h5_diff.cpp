@@ -9,10 +9,11 @@
 int main(int argc, char** argv) {
   std::string a, b;
   double tolerance = 0;
-  dexremoe::Options options("h5_diff",
-                            "Compares two HDF5 files of this project. Silent and exit 0 when equal; "
-                            "else lists what differs and exits 1.",
-                            "h5_diff --a=run1/base.h5 --b=run2/base.h5 --tolerance=1e-6");
+  dexremoe::Options options(
+      "h5_diff",
+      "Compares two HDF5 files of this project. Silent and exit 0 when equal; "
+      "else lists what differs and exits 1.",
+      "h5_diff --a=run1/base.h5 --b=run2/base.h5 --tolerance=1e-6");
   options.Add("a", &a, "first file").Required();
   options.Add("b", &b, "second file").Required();
   options.Add("tolerance", &tolerance, "largest difference of two numbers that counts as equal")

@@ -7,10 +7,11 @@
 
 int main(int argc, char** argv) {
   std::string file, values;
-  dexremoe::Options options("h5_info",
-                            "Prints format, provenance and datasets (type, extents, unit, range) of "
-                            "an HDF5 file of this project.",
-                            "h5_info --file=results/quick/eval/base.h5");
+  dexremoe::Options options(
+      "h5_info",
+      "Prints format, provenance and datasets (type, extents, unit, range) of "
+      "an HDF5 file of this project.",
+      "h5_info --file=results/quick/eval/base.h5");
   options.Add("file", &file, "HDF5 file to look into").Required();
   options.Add("values", &values, "print the values of this dataset instead, one row a line");
   return dexremoe::RunTool(options, argc, argv, [&] {

@@ -69,7 +69,8 @@ Figure Draw(const PlotOptions& o) {
 
 int main(int argc, char** argv) {
   PlotOptions plot;
-  Options options("plot", "Draws a figure as PNG and PDF, with its data and gnuplot script beside it.",
+  Options options("plot",
+                  "Draws a figure as PNG and PDF, with its data and gnuplot script beside it.",
                   "plot --kind=curves --in=base.csv,gate.csv --labels=\"Base,DexReMoE\" "
                   "--out=figures/curves");
   plot.Register(options);

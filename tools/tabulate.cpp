@@ -14,8 +14,9 @@ namespace {
 std::vector<dexremoe::MethodResults> Group(const std::vector<std::string>& files,
                                            const std::vector<std::string>& labels) {
   if (files.size() != labels.size())
-    throw dexremoe::UsageError(fmt::format(
-        "--labels: expected as many as files in --eval ({}), found {}", files.size(), labels.size()));
+    throw dexremoe::UsageError(
+        fmt::format("--labels: expected as many as files in --eval ({}), found {}", files.size(),
+                    labels.size()));
   std::vector<dexremoe::MethodResults> methods;
   for (std::size_t i = 0; i < files.size(); ++i) {
     std::size_t m = 0;

@@ -24,10 +24,14 @@ spdlog::logger& Logger() {
 
 spdlog::level::level_enum SpdlogLevel(LogLevel level) {
   switch (level) {
-    case LogLevel::kDebug: return spdlog::level::debug;
-    case LogLevel::kInfo: return spdlog::level::info;
-    case LogLevel::kWarning: return spdlog::level::warn;
-    case LogLevel::kError: return spdlog::level::err;
+    case LogLevel::kDebug:
+      return spdlog::level::debug;
+    case LogLevel::kInfo:
+      return spdlog::level::info;
+    case LogLevel::kWarning:
+      return spdlog::level::warn;
+    case LogLevel::kError:
+      return spdlog::level::err;
   }
   return spdlog::level::info;
 }
@@ -74,8 +78,7 @@ void Progress::Update(double done, std::string_view note) {
 void Progress::Draw(double done, std::string_view note, Clock::time_point now) {
   const double fraction = total_ > 0 ? std::clamp(done / total_, 0.0, 1.0) : 1.0;
   const double spent = std::chrono::duration<double>(now - start_).count();
-  const double left =
-      done > first_done_ ? spent * (total_ - done) / (done - first_done_) : NAN;
+  const double left = done > first_done_ ? spent * (total_ - done) / (done - first_done_) : NAN;
   const std::string tail = fmt::format("{:3.0f} %  {} left{}{}", 100 * fraction,
                                        FormatDuration(left), note.empty() ? "" : "  ", note);
   if (!terminal_) {

@@ -1,5 +1,7 @@
 #include "base/options.h"
 
+#include <toml++/toml.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -8,7 +10,6 @@
 #include <cstdio>
 #include <limits>
 #include <string_view>
-#include <toml++/toml.h>
 
 #include "base/check.h"
 #include "base/error.h"
@@ -20,13 +21,13 @@ namespace {
 // Every section that a configuration file may have beside the tools' own names. A section outside
 // both lists is an error; a section that this tool does not use is left to the tools that do.
 constexpr std::array<std::string_view, 13> kSections = {
-    "scale", "decompose", "cloud", "shape",  "hand", "sim", "grasp",
-    "task",  "policy",    "ppo",   "eval",   "tsne", "render"};
+    "scale", "decompose", "cloud", "shape", "hand", "sim",   "grasp",
+    "task",  "policy",    "ppo",   "eval",  "tsne", "render"};
 constexpr std::array<std::string_view, 19> kTools = {
-    "make_objects", "scale_mesh",    "decompose",   "sample_cloud", "train_shape",
-    "describe_shape", "hand_info",   "find_grasps", "train_base",   "train_expert",
-    "train_gate",   "evaluate",      "tabulate",    "embed_gate",   "plot",
-    "render",       "h5_info",       "h5_diff",     "list_objects"};
+    "make_objects",   "scale_mesh", "decompose",   "sample_cloud", "train_shape",
+    "describe_shape", "hand_info",  "find_grasps", "train_base",   "train_expert",
+    "train_gate",     "evaluate",   "tabulate",    "embed_gate",   "plot",
+    "render",         "h5_info",    "h5_diff",     "list_objects"};
 
 template <typename List>
 bool Contains(const List& list, std::string_view word) {
@@ -85,15 +86,17 @@ std::string FlagText(const std::string& path, const std::string& key, const toml
   if (const auto* real = node.as_floating_point()) return fmt::format("{}", real->get());
   if (const auto* list = node.as_array()) {
     std::string text;
-    for (const toml::node& item : *list) text += (text.empty() ? "" : ",") + FlagText(path, key, item);
+    for (const toml::node& item : *list)
+      text += (text.empty() ? "" : ",") + FlagText(path, key, item);
     return text;
   }
   throw UsageError(fmt::format(
-      "{}: key '{}': expected a number, text, true, false or a list, found another type", path, key));
+      "{}: key '{}': expected a number, text, true, false or a list, found another type", path,
+      key));
 }
 
-// What a number of type T must look like; "" when `text` does. CLI11 itself takes -1 for an unsigned
-// number, and out-of-range ones. A whole number is rewritten, as CLI11 reads 010 as octal.
+// What a number of type T must look like; "" when `text` does. CLI11 itself takes -1 for an
+// unsigned number, and out-of-range ones. A whole number is rewritten, as CLI11 reads 010 as octal.
 template <typename T>
 std::string NumberFault(std::string& text) {
   T value{};
@@ -301,7 +304,8 @@ bool Options::Parse(int argc, const char* const* argv) {
   words.insert(words.begin(), from_config.begin(), from_config.end());
   for (const std::string& word : words) {
     if (!word.starts_with("--"))
-      throw UsageError(fmt::format("unexpected argument '{}'; options are written --name=value", word));
+      throw UsageError(
+          fmt::format("unexpected argument '{}'; options are written --name=value", word));
     const std::string name = word.substr(2, word.find('=') - 2);
     if (name == "help" || name == "version" || Has(name)) continue;
     std::vector<std::string> names;

@@ -86,8 +86,7 @@ Embedding EmbedWeights(const std::vector<float>& weight, int experts,
   map.perplexity = tsne.perplexity;
   map.distinct = tsne.distinct;
   const int k = std::min(kNeighbours, (n - 1) / 2);
-  const NeighbourPreservation kept =
-      ComparePositions(ratios, n, experts, map.position, 2, k, pool);
+  const NeighbourPreservation kept = ComparePositions(ratios, n, experts, map.position, 2, k, pool);
   map.neighbour_overlap = kept.overlap;
   map.trustworthiness = kept.trustworthiness;
   const int count = static_cast<int>(map.objects.size());

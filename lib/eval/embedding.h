@@ -17,24 +17,24 @@ inline constexpr H5Format kEmbeddingFormat{"dexremoe.embedding", 1};
 
 struct EmbeddedObject {
   std::string name, category;
-  int cluster = 0;               // of the mean log ratios, see EmbedWeights
-  int expert = 0;                // the one with the largest mean weight
-  double x = 0, y = 0;           // median position of its rows
+  int cluster = 0;      // of the mean log ratios, see EmbedWeights
+  int expert = 0;       // the one with the largest mean weight
+  double x = 0, y = 0;  // median position of its rows
 };
 
 struct Embedding {
   int experts = 0;
-  std::vector<float> weight;       // [N, experts], rows sum to one
-  std::vector<double> position;    // [N, 2]
+  std::vector<float> weight;             // [N, experts], rows sum to one
+  std::vector<double> position;          // [N, 2]
   std::vector<std::int32_t> row_object;  // [N], index into objects
   std::vector<EmbeddedObject> objects;
   int clusters = 0;
-  double silhouette = 0;           // of the clusters, -1 .. 1
-  double kl = 0;                   // nats
+  double silhouette = 0;  // of the clusters, -1 .. 1
+  double kl = 0;          // nats
   double perplexity = 0;
-  double neighbour_overlap = 0;    // share of the 10 nearest neighbours kept
+  double neighbour_overlap = 0;  // share of the 10 nearest neighbours kept
   double trustworthiness = 0;
-  int distinct = 0;                // rows that differ
+  int distinct = 0;  // rows that differ
 };
 
 // Centred log ratios (Aitchison 1982): the coordinates in which distances between compositions are

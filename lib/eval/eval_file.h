@@ -25,11 +25,11 @@ struct EvalObject {
 };
 
 struct EvalFile {
-  std::string policy;      // file name, or "untrained"
-  std::string engine;      // simulation engine
-  int substeps = 0;        // physics steps per control step
+  std::string policy;  // file name
+  std::string engine;  // simulation engine
+  int substeps = 0;    // physics steps per control step
   std::uint64_t seed = 0;
-  double push = 0;         // N; 0 = no disturbance
+  double push = 0;  // N; 0 = no disturbance
   std::vector<EvalObject> objects;
   std::vector<EvalRun> runs;
 };

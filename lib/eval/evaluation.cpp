@@ -45,8 +45,7 @@ void EvalOptions::Register(Options& options) {
       .Range(1e-3, 3.15);
   options.Add("eval.push", &push, "force of the pushes on the object, N; 0 = none").Range(0, 1000);
   options.Add("eval.push_every", &push_every, "control steps between pushes").Range(1, 1e6);
-  options.Add("eval.resamples", &resamples, "bootstrap resamples for the intervals")
-      .Range(0, 1e6);
+  options.Add("eval.resamples", &resamples, "bootstrap resamples for the intervals").Range(0, 1e6);
 }
 
 std::vector<EpisodeJob> MakeJobs(int objects, int episodes) {

@@ -34,9 +34,9 @@ std::vector<EpisodeJob> MakeJobs(int objects, int episodes);
 
 // Writes actions [N, num_joints] for the batch's present observations.
 using ActFunction = std::function<void(const ReorientBatch& batch, std::vector<float>& actions)>;
-// The policy's means, rounded alike in whatever batch an environment stands: the matrix library takes
-// other paths for a few rows than for many, so the batch is filled up to whole blocks. `runner` must
-// outlive the function.
+// The policy's means, rounded alike in whatever batch an environment stands: the matrix library
+// takes other paths for a few rows than for many, so the batch is filled up to whole blocks.
+// `runner` must outlive the function.
 ActFunction PolicyActions(PolicyRunner& runner);
 
 // Called before every step with the actions about to be taken and after it with its result.

@@ -1,4 +1,5 @@
-// A figure drawn by gnuplot: its data and its script stand beside it, so that anyone can restyle it.
+// A figure drawn by gnuplot: its data and its script stand beside it, so that anyone can restyle
+// it.
 #pragma once
 
 #include <array>

@@ -6,8 +6,8 @@
 namespace dexremoe {
 
 struct LabelRequest {
-  double x = 0, y = 0;   // the point
-  double width = 0;      // of the text
+  double x = 0, y = 0;  // the point
+  double width = 0;     // of the text
 };
 
 struct PlacedLabel {
@@ -19,8 +19,8 @@ struct PlacedLabel {
 struct LabelCanvas {
   double width = 0, height = 0;
   double text_height = 0;
-  double marker_radius = 0;     // of the labelled points
-  std::vector<double> dots;     // x, y of small points better left free
+  double marker_radius = 0;  // of the labelled points
+  std::vector<double> dots;  // x, y of small points better left free
 };
 
 // All lengths in the same unit (centimetres on paper). Greedy: each label takes the place nearest

@@ -22,9 +22,13 @@ using ObjectValues = std::array<double, kNumObjectMetrics>;
 using Values = std::array<double, kNumMetrics>;
 
 Sums SumsOf(const EpisodeRecord& e) {
-  return {static_cast<double>(e.successes), e.end == EpisodeEnd::kFall ? 1.0 : 0.0,
-          e.end == EpisodeEnd::kTimeout ? 1.0 : 0.0, static_cast<double>(e.length),
-          e.total_reward, e.mean_angle, e.mean_distance};
+  return {static_cast<double>(e.successes),
+          e.end == EpisodeEnd::kFall ? 1.0 : 0.0,
+          e.end == EpisodeEnd::kTimeout ? 1.0 : 0.0,
+          static_cast<double>(e.length),
+          e.total_reward,
+          e.mean_angle,
+          e.mean_distance};
 }
 
 Sums& operator+=(Sums& a, const Sums& b) {

@@ -30,14 +30,31 @@ struct Estimate {
 // kPer600 is successes * 600 / control steps lived, a rate that early falls do not lower. The two
 // must not be mixed up.
 enum class ObjectMetric {
-  kSuccesses, kPer600, kFallShare, kTimeoutShare, kLength, kReturn, kAngle, kDistance
+  kSuccesses,
+  kPer600,
+  kFallShare,
+  kTimeoutShare,
+  kLength,
+  kReturn,
+  kAngle,
+  kDistance
 };
 inline constexpr int kNumObjectMetrics = 8;
 
 // The paper's five, then the other figures averaged over objects (kPer600: sums over all episodes).
 enum class Metric {
-  kMin, kMax, kWorst5, kBest5, kMean,
-  kPer600, kFallShare, kTimeoutShare, kLength, kReturn, kAngle, kDistance
+  kMin,
+  kMax,
+  kWorst5,
+  kBest5,
+  kMean,
+  kPer600,
+  kFallShare,
+  kTimeoutShare,
+  kLength,
+  kReturn,
+  kAngle,
+  kDistance
 };
 inline constexpr int kNumMetrics = 12;
 inline constexpr int kNumPaperMetrics = 5;
@@ -52,7 +69,7 @@ const MetricInfo& Info(Metric metric);
 const MetricInfo& Info(ObjectMetric metric);
 
 struct ObjectMetrics {
-  int object = 0;    // the index that the episodes carry
+  int object = 0;  // the index that the episodes carry
   int episodes = 0;
   std::array<Estimate, kNumObjectMetrics> values;
   const Estimate& operator[](ObjectMetric m) const { return values[static_cast<int>(m)]; }
@@ -72,7 +89,8 @@ struct BootstrapOptions {
 // `episodes` in any order, at least one. Episodes are resampled within each object (stratified);
 // objects are fixed, so the intervals say how well these objects were measured, not how other
 // objects would do. Results depend on the episodes' order within an object, not on anything else.
-Metrics ComputeMetrics(const std::vector<EpisodeRecord>& episodes, const BootstrapOptions& bootstrap);
+Metrics ComputeMetrics(const std::vector<EpisodeRecord>& episodes,
+                       const BootstrapOptions& bootstrap);
 
 // The p-quantile of `sorted` (ascending, not empty), linear between order statistics.
 double Quantile(const std::vector<double>& sorted, double p);

@@ -32,47 +32,64 @@ std::vector<int> Order(const std::vector<double>& x, int n, int d, int i) {
   return order;
 }
 
-// One run of Lloyd's algorithm from a k-means++ start. Returns the sum of squared distances.
-double Lloyd(const std::vector<double>& x, int n, int d, int k, Rng& rng, std::vector<int>& label) {
-  std::vector<double> centre(x.begin(), x.begin() + d), nearest(n, HUGE_VAL);
-  const auto first = static_cast<std::ptrdiff_t>(rng.Index(n));
-  centre.assign(x.begin() + first * d, x.begin() + (first + 1) * d);
-  for (int c = 1; c < k; ++c) {
+// k-means++ (Arthur and Vassilvitskii 2007): each next centre is drawn with a chance proportional
+// to its squared distance from the nearest one so far. Returns [k, d].
+std::vector<double> DrawCentres(const std::vector<double>& x, int n, int d, int k, Rng& rng) {
+  std::vector<double> centre, nearest(n, HUGE_VAL);
+  int pick = static_cast<int>(rng.Index(n));
+  for (int c = 0; c < k; ++c) {
+    centre.insert(centre.end(), x.begin() + pick * d, x.begin() + (pick + 1) * d);
     double sum = 0;
     for (int i = 0; i < n; ++i) {
-      nearest[i] = std::min(nearest[i], SquaredDistance(&x[i * d], &centre[(c - 1) * d], d));
+      nearest[i] = std::min(nearest[i], SquaredDistance(&x[i * d], &centre[c * d], d));
       sum += nearest[i];
     }
     double left = rng.Uniform() * sum;
-    int pick = 0;
+    pick = 0;
     while (pick + 1 < n && (left -= nearest[pick]) >= 0) ++pick;
-    centre.insert(centre.end(), x.begin() + pick * d, x.begin() + (pick + 1) * d);
   }
-  label.assign(n, -1);
+  return centre;
+}
+
+// Gives every point its nearest centre; returns the sum of squared distances.
+double Assign(const std::vector<double>& x, int n, int d, const std::vector<double>& centre,
+              std::vector<int>& label) {
   double total = 0;
-  for (bool moved = true; moved;) {
-    moved = false;
-    total = 0;
-    std::vector<double> sum(k * d, 0.0);
-    std::vector<int> count(k, 0);
-    for (int i = 0; i < n; ++i) {
-      int best = 0;
-      double least = HUGE_VAL;
-      for (int c = 0; c < k; ++c) {
-        const double distance = SquaredDistance(&x[i * d], &centre[c * d], d);
-        if (distance < least) {
-          least = distance;
-          best = c;
-        }
-      }
-      moved |= label[i] != best;
-      label[i] = best;
-      total += least;
-      ++count[best];
-      for (int a = 0; a < d; ++a) sum[best * d + a] += x[i * d + a];
+  for (int i = 0; i < n; ++i) {
+    double least = HUGE_VAL;
+    for (int c = 0; c * d < static_cast<int>(centre.size()); ++c) {
+      const double distance = SquaredDistance(&x[i * d], &centre[c * d], d);
+      if (distance >= least) continue;
+      least = distance;
+      label[i] = c;
     }
-    for (int c = 0; c < k; ++c)
-      for (int a = 0; a < d && count[c] > 0; ++a) centre[c * d + a] = sum[c * d + a] / count[c];
+    total += least;
+  }
+  return total;
+}
+
+// Moves each centre to the mean of its points; one without points stays.
+void MoveCentres(const std::vector<double>& x, int n, int d, const std::vector<int>& label,
+                 std::vector<double>& centre) {
+  std::vector<double> sum(centre.size(), 0.0);
+  std::vector<int> count(centre.size() / d, 0);
+  for (int i = 0; i < n; ++i) {
+    ++count[label[i]];
+    for (int a = 0; a < d; ++a) sum[label[i] * d + a] += x[i * d + a];
+  }
+  for (std::size_t k = 0; k < sum.size(); ++k)
+    if (count[k / d] > 0) centre[k] = sum[k] / count[k / d];
+}
+
+// Lloyd's algorithm until nothing moves. Returns the sum of squared distances.
+double Lloyd(const std::vector<double>& x, int n, int d, int k, Rng& rng, std::vector<int>& label) {
+  std::vector<double> centre = DrawCentres(x, n, d, k, rng);
+  label.assign(n, 0);
+  double total = Assign(x, n, d, centre, label);
+  for (std::vector<int> before; before != label;) {
+    before = label;
+    MoveCentres(x, n, d, label, centre);
+    total = Assign(x, n, d, centre, label);
   }
   return total;
 }
@@ -90,8 +107,10 @@ double Silhouette(const std::vector<double>& x, int n, int d, int k,
       mean[label[j]] += std::sqrt(SquaredDistance(&x[i * d], &x[j * d], d));
     double within = 0, nearest = HUGE_VAL;
     for (int c = 0; c < k; ++c) {
-      if (c == label[i]) within = mean[c] / (count[c] - 1);
-      else if (count[c] > 0) nearest = std::min(nearest, mean[c] / count[c]);
+      if (c == label[i])
+        within = mean[c] / (count[c] - 1);
+      else if (count[c] > 0)
+        nearest = std::min(nearest, mean[c] / count[c]);
     }
     const double larger = std::max(within, nearest);
     if (larger > 0 && std::isfinite(nearest)) sum += (nearest - within) / larger;
@@ -131,8 +150,10 @@ NeighbourPreservation ComparePositions(const std::vector<double>& x, int n, int 
       for (int r = 0; r + 1 < n; ++r) rank[before[r]] = r + 1;
       for (int r = 0; r < k; ++r) {
         const int excess = rank[after[r]] - k;
-        if (excess <= 0) kept[chunk] += 1;
-        else penalty[chunk] += excess;
+        if (excess <= 0)
+          kept[chunk] += 1;
+        else
+          penalty[chunk] += excess;
       }
     }
   });

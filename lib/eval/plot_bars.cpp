@@ -14,7 +14,8 @@ const EvalRun& RunAt(const BarMethod& method, double tolerance) {
   const EvalRun* run = FindRun(method.eval, tolerance);
   if (run == nullptr) {
     std::string found;
-    for (const EvalRun& r : method.eval.runs) found += fmt::format("{}{}", found.empty() ? "" : ", ", r.tolerance);
+    for (const EvalRun& r : method.eval.runs)
+      found += fmt::format("{}{}", found.empty() ? "" : ", ", r.tolerance);
     Fail("bars: {}: expected an evaluation at tolerance {} rad, found {}", method.label, tolerance,
          found);
   }
@@ -28,8 +29,8 @@ void CheckSameObjects(const std::vector<BarMethod>& methods) {
     bool same = objects.size() == first.size();
     for (std::size_t i = 0; same && i < first.size(); ++i) same = objects[i].name == first[i].name;
     if (!same)
-      Fail("bars: {}: expected the same {} objects as {}, found others", method.label,
-           first.size(), methods.front().label);
+      Fail("bars: {}: expected the same {} objects as {}, found others", method.label, first.size(),
+           methods.front().label);
   }
 }
 
@@ -39,9 +40,7 @@ std::vector<int> SortedObjects(const std::vector<BarMethod>& methods, double tol
   const auto& objects = methods.back().eval.objects;
   std::vector<int> order(objects.size());
   std::iota(order.begin(), order.end(), 0);
-  const auto score = [&](int o) {
-    return run.metrics.objects[o][ObjectMetric::kSuccesses].value;
-  };
+  const auto score = [&](int o) { return run.metrics.objects[o][ObjectMetric::kSuccesses].value; };
   std::sort(order.begin(), order.end(), [&](int a, int b) {
     return score(a) != score(b) ? score(a) < score(b) : objects[a].name < objects[b].name;
   });
@@ -57,8 +56,8 @@ std::string BarData(const std::vector<BarMethod>& methods, double tolerance,
     const EvalRun& run = RunAt(methods[m], tolerance);
     for (std::size_t i = 0; i < order.size(); ++i) {
       const Estimate& s = run.metrics.objects[order[i]][ObjectMetric::kSuccesses];
-      const double place = static_cast<double>(i) - kGroupWidth / 2 +
-                           step * (static_cast<double>(m) + 0.5);
+      const double place =
+          static_cast<double>(i) - kGroupWidth / 2 + step * (static_cast<double>(m) + 0.5);
       data += fmt::format("{:.4f} {} {:.6g} {:.6g} {:.6g}\n", place,
                           GnuplotQuoted(methods[m].eval.objects[order[i]].name), s.value, s.low,
                           s.high);
@@ -70,8 +69,9 @@ std::string BarData(const std::vector<BarMethod>& methods, double tolerance,
 std::string ObjectTics(const std::vector<BarMethod>& methods, const std::vector<int>& order) {
   if (order.size() > kMostBars)
     return fmt::format("set xtics 0,10,{} nomirror\nset xlabel \"objects, ascending under {}\"\n",
-                       order.size(), GnuplotQuoted(methods.back().label).substr(
-                           1, GnuplotQuoted(methods.back().label).size() - 2));
+                       order.size(),
+                       GnuplotQuoted(methods.back().label)
+                           .substr(1, GnuplotQuoted(methods.back().label).size() - 2));
   std::string tics = "set xtics rotate by 45 right nomirror scale 0 (";
   for (std::size_t i = 0; i < order.size(); ++i)
     tics += fmt::format("{}{} {}", i > 0 ? ", " : "",
@@ -87,12 +87,15 @@ std::string PlotLines(const std::vector<BarMethod>& methods, bool bars) {
     if (m > 0) script += ", \\\n  ";
     if (bars)
       script += fmt::format(
-          "data index {0} using 1:3 with boxes lc rgb \"{1}\" fs solid 0.85 noborder title {2}, \\\n"
-          "  data index {0} using 1:4:(0):($5-$4) with vectors nohead lw 0.9 lc rgb \"#303030\" notitle",
+          "data index {0} using 1:3 with boxes lc rgb \"{1}\" fs solid 0.85 noborder title {2}, "
+          "\\\n"
+          "  data index {0} using 1:4:(0):($5-$4) with vectors nohead lw 0.9 lc rgb \"#303030\" "
+          "notitle",
           m, color, title);
     else
       script += fmt::format(
-          "data index {0} using 1:4:(0):($5-$4) with vectors nohead lw 0.6 lc rgb \"{1}\" notitle, \\\n"
+          "data index {0} using 1:4:(0):($5-$4) with vectors nohead lw 0.6 lc rgb \"{1}\" notitle, "
+          "\\\n"
           "  data index {0} using 1:3 with points pt 7 ps 0.35 lc rgb \"{3}\" title {2}",
           m, PaletteColor(static_cast<int>(m), 0x80), title, color);
   }
@@ -106,9 +109,10 @@ Figure BarsFigure(const std::vector<BarMethod>& methods, double tolerance) {
   const std::vector<int> order = SortedObjects(methods, tolerance);
   const bool bars = order.size() <= kMostBars;
   Figure figure;
-  figure.width = bars ? std::max(12.0, 3.0 + 0.35 * static_cast<double>(order.size() * methods.size()) +
-                                           0.4 * static_cast<double>(order.size()))
-                      : 18;
+  figure.width =
+      bars ? std::max(12.0, 3.0 + 0.35 * static_cast<double>(order.size() * methods.size()) +
+                                0.4 * static_cast<double>(order.size()))
+           : 18;
   figure.height = 7.5;
   figure.data = BarData(methods, tolerance, order);
   figure.script = fmt::format(

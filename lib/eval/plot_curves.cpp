@@ -68,7 +68,8 @@ std::vector<std::string> PanelColumns(const std::vector<Curve>& curves,
     if (std::all_of(curves.begin(), curves.end(),
                     [&](const Curve& c) { return c.table.HasColumn(kAxes[k].column); }))
       columns.push_back(kAxes[k].column);
-  if (columns.empty()) Fail("curves: expected a column such as {}, found none; name some", kAxes[0].column);
+  if (columns.empty())
+    Fail("curves: expected a column such as {}, found none; name some", kAxes[0].column);
   return columns;
 }
 
@@ -125,17 +126,19 @@ std::string PanelScript(const std::vector<Curve>& curves, const std::string& col
                         std::size_t panel) {
   const Axis axis = AxisOf(column);
   const std::size_t runs = curves.size();
-  std::string script = fmt::format("set title {} offset 0,-0.6\n{} logscale y\nset format y \"{}\"\n",
-                                   GnuplotQuoted(axis.label), axis.log ? "set" : "unset",
-                                   axis.log ? "%.0e" : "%g");
+  std::string script =
+      fmt::format("set title {} offset 0,-0.6\n{} logscale y\nset format y \"{}\"\n",
+                  GnuplotQuoted(axis.label), axis.log ? "set" : "unset", axis.log ? "%.0e" : "%g");
   script += TicsScript("y", axis.log ? 0 : TicStep(curves, column, 6)) + "plot ";
   for (std::size_t r = 0; r < runs; ++r)
     script += fmt::format("{}data index {} using 1:{} with lines lw 0.5 lc rgb \"{}\"",
                           r > 0 ? ", \\\n  " : "", r, 2 * panel + 2,
                           PaletteColor(static_cast<int>(r), 0xB0));
   for (std::size_t r = 0; r < runs; ++r)
-    script += fmt::format(", \\\n  data index {} using 1:{} with lines lw 1.6 lc rgb \"{}\"", r,
-                          2 * panel + 3, PaletteColor(static_cast<int>(r)));
+    script +=
+        fmt::format(", \\\n  data index {} using 1:{} with {} lc rgb \"{}\"", r, 2 * panel + 3,
+                    curves[r].table.num_rows() == 1 ? "points pt 7 ps 0.4" : "lines lw 1.6",
+                    PaletteColor(static_cast<int>(r)));
   return script + "\n";
 }
 

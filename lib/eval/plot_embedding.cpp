@@ -17,7 +17,7 @@ constexpr double kLetterWidth = 0.136;  // cm, of a label
 
 // The group of every object, and what each group is called.
 struct Groups {
-  std::vector<int> of;             // [O]
+  std::vector<int> of;  // [O]
   std::map<int, std::string> name;
 };
 
@@ -72,9 +72,9 @@ std::string EmbeddingData(const Embedding& map, const Groups& groups, const Fram
                         frame.Y(map.position[2 * row + 1]), groups.of[map.row_object[row]]);
   data += "\n\n# x y group number name: one line per object\n";
   for (std::size_t o = 0; o < map.objects.size(); ++o)
-    data += fmt::format("{:.4f} {:.4f} {} {} {}\n", frame.X(map.objects[o].x),
-                        frame.Y(map.objects[o].y), groups.of[o], o,
-                        GnuplotQuoted(map.objects[o].name));
+    data +=
+        fmt::format("{:.4f} {:.4f} {} {} {}\n", frame.X(map.objects[o].x),
+                    frame.Y(map.objects[o].y), groups.of[o], o, GnuplotQuoted(map.objects[o].name));
   data += "\n\n# x y text\n";
   for (std::size_t o = 0; o < labels.size(); ++o)
     data += fmt::format("{:.4f} {:.4f} {}\n", labels[o].x, labels[o].y, GnuplotQuoted(text[o]));
@@ -92,14 +92,17 @@ std::string PlotLines(const Groups& groups) {
   std::string script = "plot ";
   for (const auto& [group, name] : groups.name)
     script += fmt::format(
-        "data index 0 using 1:($3 == {} ? $2 : NaN) with points pt 7 ps 0.22 lc rgb \"{}\" notitle, "
+        "data index 0 using 1:($3 == {} ? $2 : NaN) with points pt 7 ps 0.22 lc rgb \"{}\" "
+        "notitle, "
         "\\\n  ",
         group, PaletteColor(group, 0x90));
-  script += "data index 3 using 1:2:3:4 with vectors nohead lw 0.5 lc rgb \"#808080\" notitle, \\\n  ";
+  script +=
+      "data index 3 using 1:2:3:4 with vectors nohead lw 0.5 lc rgb \"#808080\" notitle, \\\n  ";
   for (const auto& [group, name] : groups.name)
     script += fmt::format(
         "data index 1 using 1:($3 == {0} ? $2 : NaN) with points pt 7 ps 0.85 lc rgb \"#FFFFFF\" "
-        "notitle, \\\n  data index 1 using 1:($3 == {0} ? $2 : NaN) with points pt 7 ps 0.62 lc rgb "
+        "notitle, \\\n  data index 1 using 1:($3 == {0} ? $2 : NaN) with points pt 7 ps 0.62 lc "
+        "rgb "
         "\"{1}\" notitle, \\\n  NaN with points pt 7 ps 0.9 lc rgb \"{1}\" title {2}, \\\n  ",
         group, PaletteColor(group), GnuplotQuoted(name));
   return script +
@@ -117,40 +120,47 @@ std::string CaptionOf(const Embedding& map) {
       map.trustworthiness, map.clusters, map.silhouette);
 }
 
+std::vector<std::string> LabelTexts(const Embedding& map) {
+  std::vector<std::string> text;
+  for (std::size_t o = 0; o < map.objects.size(); ++o)
+    text.push_back(map.objects.size() <= kMostNames ? map.objects[o].name : fmt::format("{}", o));
+  return text;
+}
+
+std::vector<PlacedLabel> PlaceTexts(const Embedding& map, const Frame& frame,
+                                    const std::vector<std::string>& text) {
+  std::vector<LabelRequest> requests;
+  for (std::size_t o = 0; o < map.objects.size(); ++o)
+    requests.push_back({frame.X(map.objects[o].x), frame.Y(map.objects[o].y),
+                        0.04 + kLetterWidth * static_cast<double>(text[o].size())});
+  LabelCanvas canvas{kMap, kMap, 0.27, kMarkerRadius, {}};
+  for (std::size_t k = 0; k + 1 < map.position.size(); k += 2)
+    canvas.dots.insert(canvas.dots.end(), {frame.X(map.position[k]), frame.Y(map.position[k + 1])});
+  return PlaceLabels(requests, canvas);
+}
+
 }  // namespace
 
 Figure EmbeddingFigure(const Embedding& map, const std::string& color) {
   const Groups groups = GroupObjects(map, color);
   const Frame frame(map.position);
-  const bool names = map.objects.size() <= kMostNames;
-  std::vector<std::string> text;
-  std::vector<LabelRequest> requests;
-  for (std::size_t o = 0; o < map.objects.size(); ++o) {
-    text.push_back(names ? map.objects[o].name : fmt::format("{}", o));
-    requests.push_back({frame.X(map.objects[o].x), frame.Y(map.objects[o].y),
-                        0.04 + kLetterWidth * static_cast<double>(text.back().size())});
-  }
-  LabelCanvas canvas{kMap, kMap, 0.27, kMarkerRadius, {}};
-  for (std::size_t k = 0; k + 1 < map.position.size(); k += 2)
-    canvas.dots.insert(canvas.dots.end(),
-                       {frame.X(map.position[k]), frame.Y(map.position[k + 1])});
-  const auto labels = PlaceLabels(requests, canvas);
+  const std::vector<std::string> text = LabelTexts(map);
   Figure figure;
   figure.width = kMap + 0.4;
   figure.height = kMap + 1.9;
-  figure.data = EmbeddingData(map, groups, frame, text, labels);
+  figure.data = EmbeddingData(map, groups, frame, text, PlaceTexts(map, frame, text));
   const double bottom = 1.0 / figure.height, top = (1.0 + kMap) / figure.height;
   figure.script = fmt::format(
       "set lmargin at screen {0:.4f}\nset rmargin at screen {1:.4f}\n"
       "set bmargin at screen {2:.4f}\nset tmargin at screen {3:.4f}\n"
-      "set xrange [0:{4}]\nset yrange [0:{4}]\nunset tics\nset border 15 lw 0.6 lc rgb \"#A0A0A0\"\n"
+      "set xrange [0:{4}]\nset yrange [0:{4}]\nunset tics\nset border 15 lw 0.6 lc rgb "
+      "\"#A0A0A0\"\n"
       "set style textbox opaque noborder margins 0.3,0.3 fillcolor rgb \"#50FFFFFF\"\n"
       "set key at screen 0.5,screen {5:.4f} center center horizontal samplen 0.6 maxcols 4\n"
-      "set label 1 {6} at screen 0.5,screen {7:.4f} center noenhanced font \"DejaVu Sans,7.5\" textcolor rgb "
+      "set label 1 {6} at screen 0.5,screen {7:.4f} center font \"DejaVu Sans,7.5\" textcolor rgb "
       "\"#404040\"\n",
-      0.2 / figure.width, 1 - 0.2 / figure.width, bottom, top, kMap,
-      (top + 1) / 2,
-      CaptionOf(map), 0.62 * bottom);
+      0.2 / figure.width, 1 - 0.2 / figure.width, bottom, top, kMap, (top + 1) / 2, CaptionOf(map),
+      0.62 * bottom);
   figure.script += PlotLines(groups) + "reset\n";
   return figure;
 }

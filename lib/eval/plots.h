@@ -15,9 +15,9 @@ struct Curve {
   std::string label;
   CsvTable table;
 };
-// One panel per column, one colour per run: the raw values faint, on top a running straight-line fit
-// over `smooth` of the rows (0 .. 1). `x` is the column on the abscissa. Without `columns`, those
-// of the training curves that the files have. Throws Error when nothing is left to draw.
+// One panel per column, one colour per run: the raw values faint, on top a running straight-line
+// fit over `smooth` of the rows (0 .. 1). `x` is the column on the abscissa. Without `columns`,
+// those of the training curves that the files have. Throws Error when nothing is left to draw.
 Figure CurvesFigure(const std::vector<Curve>& curves, const std::string& x,
                     const std::vector<std::string>& columns, double smooth);
 

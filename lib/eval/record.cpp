@@ -45,12 +45,12 @@ void Describe(const EvalSetup& setup, const EvalRun& run,
     const EpisodeRecord& again = replayed[i];
     const TaskObject& object = setup.objects[again.object];
     const EpisodeRecord* first = FindRecord(run, {again.object, again.episode});
-    if (first != nullptr &&
-        (first->length != again.length || first->successes != again.successes))
-      Fail("trace of {} episode {}: expected {} steps and {} successes as evaluated, found {} and "
-           "{}",
-           object.name, again.episode, first->length, first->successes, again.length,
-           again.successes);
+    if (first != nullptr && (first->length != again.length || first->successes != again.successes))
+      Fail(
+          "trace of {} episode {}: expected {} steps and {} successes as evaluated, found {} and "
+          "{}",
+          object.name, again.episode, first->length, first->successes, again.length,
+          again.successes);
     traces[i].object = object.name;
     traces[i].category = kCategories[object.category];
     traces[i].episode = again.episode;
@@ -69,9 +69,8 @@ std::vector<EpisodeJob> ChooseEpisodes(const EvalRun& run, int count, const std:
       return a->successes != b->successes ? a->successes > b->successes : a->length > b->length;
     });
   if (choice == "worst")
-    std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) {
-      return a->successes < b->successes;
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [](const auto* a, const auto* b) { return a->successes < b->successes; });
   // Rounds over the objects: the first episode of each, then the second of each, and so on.
   std::vector<EpisodeJob> chosen;
   std::vector<bool> taken(order.size(), false);

@@ -56,8 +56,8 @@ std::string MarkdownTable(const ResultTable& table) {
       width[c] = std::max(width[c], ShownWidth(line[c]));
   std::string text = MarkdownLine(lines[0], width) + "|";
   for (std::size_t c = 0; c < width.size(); ++c)
-    text += c == 0 ? ":" + std::string(width[c] + 1, '-') + "|"
-                   : std::string(width[c] + 1, '-') + ":|";
+    text +=
+        c == 0 ? ":" + std::string(width[c] + 1, '-') + "|" : std::string(width[c] + 1, '-') + ":|";
   text += "\n";
   for (std::size_t l = 1; l < lines.size(); ++l) text += MarkdownLine(lines[l], width);
   return text;
@@ -69,7 +69,8 @@ bool HasPaperRows(const ResultTable& table) {
 }
 
 const char* kPaperRemark =
-    "Rows marked (paper) are the numbers printed there: another simulator, other meshes, 100 training "
+    "Rows marked (paper) are the numbers printed there: another simulator, other meshes, 100 "
+    "training "
     "and 50 other objects.";
 
 std::string LatexEscaped(const std::string& text) {
@@ -83,12 +84,18 @@ std::string LatexEscaped(const std::string& text) {
 
 std::string LatexHeader(Metric column) {
   switch (column) {
-    case Metric::kMin: return "$S_{\\min}$";
-    case Metric::kMax: return "$S_{\\max}$";
-    case Metric::kWorst5: return "$\\bar S_{5-}$";
-    case Metric::kBest5: return "$\\bar S_{5+}$";
-    case Metric::kMean: return "$\\bar S$";
-    default: return LatexEscaped(Info(column).label);
+    case Metric::kMin:
+      return "$S_{\\min}$";
+    case Metric::kMax:
+      return "$S_{\\max}$";
+    case Metric::kWorst5:
+      return "$\\bar S_{5-}$";
+    case Metric::kBest5:
+      return "$\\bar S_{5+}$";
+    case Metric::kMean:
+      return "$\\bar S$";
+    default:
+      return LatexEscaped(Info(column).label);
   }
 }
 
@@ -143,7 +150,9 @@ std::string LatexOf(const std::vector<ResultTable>& tables) {
 
 std::string CsvOf(const std::vector<ResultTable>& tables) {
   CsvWriter csv({"split", "tolerance", "source", "method", "metric", "value", "low", "high"});
-  const auto number = [](double x) { return std::isnan(x) ? std::string() : fmt::format("{:.6g}", x); };
+  const auto number = [](double x) {
+    return std::isnan(x) ? std::string() : fmt::format("{:.6g}", x);
+  };
   for (const ResultTable& table : tables)
     for (const TableRow& row : table.rows)
       for (std::size_t c = 0; c < row.values.size(); ++c) {

@@ -15,8 +15,8 @@ namespace {
 constexpr double kPaperTolerance = 0.4;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-const std::vector<Metric> kColumns = {Metric::kMin,   Metric::kMax,    Metric::kWorst5,
-                                      Metric::kBest5, Metric::kMean,   Metric::kPer600,
+const std::vector<Metric> kColumns = {Metric::kMin,       Metric::kMax,   Metric::kWorst5,
+                                      Metric::kBest5,     Metric::kMean,  Metric::kPer600,
                                       Metric::kFallShare, Metric::kLength};
 
 std::vector<std::string> ObjectNames(const EvalFile& eval, const std::string& split) {
@@ -48,11 +48,11 @@ void CheckComparable(const std::vector<MethodResults>& methods) {
         if (ObjectNames(eval, split) != ObjectNames(first, split))
           Fail("{}: expected the same {} objects as {}, found others", method.label, split,
                methods.front().label);
-      if (eval.engine != first.engine || eval.substeps != first.substeps ||
-          eval.push != first.push)
-        Fail("{}: expected engine {} with {} substeps and {} N pushes as for {}, found {}, {}, {} N",
-             method.label, first.engine, first.substeps, first.push, methods.front().label,
-             eval.engine, eval.substeps, eval.push);
+      if (eval.engine != first.engine || eval.substeps != first.substeps || eval.push != first.push)
+        Fail(
+            "{}: expected engine {} with {} substeps and {} N pushes as for {}, found {}, {}, {} N",
+            method.label, first.engine, first.substeps, first.push, methods.front().label,
+            eval.engine, eval.substeps, eval.push);
     }
 }
 
@@ -71,7 +71,8 @@ std::string Caption(const std::vector<MethodResults>& methods, const std::string
   const std::string push =
       first.push > 0 ? fmt::format(", pushes of {} N", first.push) : std::string();
   return fmt::format(
-      "Successes per episode on {} {}, tolerance {} rad; {} episodes a method, {} seed{}; engine {} "
+      "Successes per episode on {} {}, tolerance {} rad; {} episodes a method, {} seed{}; engine "
+      "{} "
       "with {} substeps{}; mean with 95 % interval (bootstrap over episodes). Falls: share of "
       "episodes; length: control steps of 600.",
       ObjectNames(first, split).size(), SplitName(split), tolerance, fmt::join(counts, " or "),
@@ -146,8 +147,8 @@ std::vector<ResultTable> MakeTables(const std::vector<MethodResults>& methods,
 
 std::string ObjectCsvOf(const std::vector<MethodResults>& methods,
                         const BootstrapOptions& bootstrap) {
-  std::vector<std::string> columns = {"object", "category", "split",
-                                      "tolerance", "method", "episodes"};
+  std::vector<std::string> columns = {"object",    "category", "split",
+                                      "tolerance", "method",   "episodes"};
   for (int k = 0; k < kNumObjectMetrics; ++k) {
     const std::string name = Info(static_cast<ObjectMetric>(k)).name;
     for (const char* suffix : {"", "_low", "_high"}) columns.push_back(name + suffix);
@@ -159,12 +160,9 @@ std::string ObjectCsvOf(const std::vector<MethodResults>& methods,
       const auto episodes = PooledEpisodes(method, "all", run.tolerance);
       for (const ObjectMetrics& m : ComputeMetrics(episodes, bootstrap).objects) {
         const EvalObject& object = first.objects[m.object];
-        std::vector<std::string> row = {object.name,
-                                        object.category,
-                                        object.split,
-                                        fmt::format("{}", run.tolerance),
-                                        method.label,
-                                        fmt::format("{}", m.episodes)};
+        std::vector<std::string> row = {object.name,  object.category,
+                                        object.split, fmt::format("{}", run.tolerance),
+                                        method.label, fmt::format("{}", m.episodes)};
         for (const Estimate& e : m.values)
           for (const double x : {e.value, e.low, e.high}) row.push_back(fmt::format("{:.6g}", x));
         csv.Row(row);

@@ -25,17 +25,17 @@ std::vector<PaperNumber> ReadPaperNumbers(const std::string& path);
 
 struct TableRow {
   std::string label;
-  bool paper = false;                 // printed numbers, without intervals
-  std::vector<Estimate> values;       // one per column; NaN where nothing is known
+  bool paper = false;            // printed numbers, without intervals
+  std::vector<Estimate> values;  // one per column; NaN where nothing is known
 };
 
 // A table of one split at one tolerance.
 struct ResultTable {
-  std::string split;                  // "train" or "ood"
-  double tolerance = 0;               // rad
+  std::string split;     // "train" or "ood"
+  double tolerance = 0;  // rad
   std::vector<Metric> columns;
   std::vector<TableRow> rows;
-  std::string caption;                // objects, episodes, seeds, engine
+  std::string caption;  // objects, episodes, seeds, engine
 };
 
 // One table for each split and tolerance that the evaluations hold; the paper's rows (of its

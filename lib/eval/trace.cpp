@@ -89,7 +89,7 @@ void WriteTrace(const std::string& path, const TraceFile& trace, const Provenanc
   const auto count = static_cast<std::int64_t>(trace.episodes.size());
   std::vector<std::int32_t> offset = {0};
   for (const EpisodeTrace& e : trace.episodes) offset.push_back(offset.back() + e.length());
-  file.WriteString("policy", trace.policy, {"", "", "policy file, or 'untrained'"});
+  file.WriteString("policy", trace.policy, {"", "", "policy file"});
   file.WriteScalar("control_rate", trace.control_rate, {"Hz", "", "rows per second"});
   file.WriteScalar("tolerance", trace.tolerance, {"rad", "", "success tolerance"});
   file.WriteStrings("joint_names", trace.joint_names, {"", "joint", "joints of the hand"});

@@ -14,11 +14,11 @@ inline constexpr H5Format kTraceFormat{"dexremoe.trace", 1};
 // One episode, row = control step. Row t holds the state before action t, the action, and whether
 // the step that followed was a success (the goal of row t + 1 is then a new one).
 struct EpisodeTrace {
-  std::string object;               // name in objects.csv
+  std::string object;  // name in objects.csv
   std::string category;
-  std::uint64_t episode = 0;        // number that addressed the random streams
-  double scale = 1;                 // size factor on the object's files
-  std::string end;                  // "fall" or "timeout"
+  std::uint64_t episode = 0;  // number that addressed the random streams
+  double scale = 1;           // size factor on the object's files
+  std::string end;            // "fall" or "timeout"
   int successes = 0;
   std::vector<double> joint_position;   // [T, J] rad
   std::vector<double> object_position;  // [T, 3] m in W
@@ -33,11 +33,11 @@ struct EpisodeTrace {
 };
 
 struct TraceFile {
-  std::string policy;                       // file name, or "untrained"
-  double control_rate = 60;                 // Hz
-  double tolerance = 0;                     // rad
-  std::vector<std::string> joint_names;     // [J]
-  std::vector<std::string> expert_names;    // [E]; empty without a gate
+  std::string policy;                     // file name
+  double control_rate = 60;               // Hz
+  double tolerance = 0;                   // rad
+  std::vector<std::string> joint_names;   // [J]
+  std::vector<std::string> expert_names;  // [E]; empty without a gate
   std::vector<EpisodeTrace> episodes;
 };
 

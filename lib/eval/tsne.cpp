@@ -22,9 +22,8 @@ int ChunkBegin(int chunk, int n) {
 }
 
 void ForRows(int n, ThreadPool& pool, const std::function<void(int chunk, int begin, int end)>& f) {
-  pool.ParallelFor(kChunks, [&](int chunk, int) {
-    f(chunk, ChunkBegin(chunk, n), ChunkBegin(chunk + 1, n));
-  });
+  pool.ParallelFor(
+      kChunks, [&](int chunk, int) { f(chunk, ChunkBegin(chunk, n), ChunkBegin(chunk + 1, n)); });
 }
 
 // Conditional affinities of one row from squared distances (d2[i] is ignored): the precision is
@@ -151,8 +150,7 @@ void TsneOptions::Register(Options& options) {
   options.Add("tsne.iterations", &iterations, "gradient steps").Range(1, 1e6);
   options.Add("tsne.exaggeration", &exaggeration, "factor on the affinities at first")
       .Range(1, 100);
-  options.Add("tsne.exaggeration_iterations", &exaggeration_iterations, "how long")
-      .Range(0, 1e6);
+  options.Add("tsne.exaggeration_iterations", &exaggeration_iterations, "how long").Range(0, 1e6);
   options.Add("tsne.learning_rate", &learning_rate, "0 = N / exaggeration / 4, at least 50")
       .Range(0, 1e6);
 }
@@ -200,8 +198,8 @@ void TsneGradient(const std::vector<float>& p, const std::vector<double>& y, int
       normaliser[chunk] -= 1;  // j = i does not count
       for (int j = 0; j < n; j += kBlock) {
         const int size = std::min(kBlock, n - j);
-        normaliser[chunk] += AddForces(row + j, u[i], v[i], u.data() + j, v.data() + j, size,
-                                       forces.data() + 4 * i);
+        normaliser[chunk] +=
+            AddForces(row + j, u[i], v[i], u.data() + j, v.data() + j, size, forces.data() + 4 * i);
       }
     }
   });

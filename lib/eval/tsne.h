@@ -15,11 +15,11 @@
 namespace dexremoe {
 
 struct TsneOptions {
-  double perplexity = 30;          // capped at (N - 1) / 3
+  double perplexity = 30;  // capped at (N - 1) / 3
   int iterations = 1000;
-  double exaggeration = 12;        // factor on the affinities during the first iterations
+  double exaggeration = 12;  // factor on the affinities during the first iterations
   int exaggeration_iterations = 250;
-  double learning_rate = 0;        // 0 = N / exaggeration / 4, at least 50 (Belkina et al. 2019)
+  double learning_rate = 0;         // 0 = N / exaggeration / 4, at least 50 (Belkina et al. 2019)
   void Register(Options& options);  // section "tsne"
 };
 

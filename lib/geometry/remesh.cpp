@@ -43,14 +43,22 @@ struct Loops {
   int count = 0;
 };
 
-// Joins the crossed edges of each face in pairs, then follows the pairs around the cube. On an
-// ambiguous face the inside corners are kept apart, or joined where `joined` (bit per face) says
-// so.
-Loops FindLoops(unsigned inside, unsigned joined) {
+// The two edges that follow each crossed edge on the surface, one per face that it borders.
+struct Pairing {
   std::array<std::array<int, 2>, 12> next;
   std::array<int, 12> degree{};
+  void Join(int a, int b) {
+    next[a][degree[a]++] = b;
+    next[b][degree[b]++] = a;
+  }
+};
+
+// Joins the crossed edges of each face in pairs. On an ambiguous face the inside corners are kept
+// apart, or joined where `joined` (bit per face) says so.
+Pairing PairCrossedEdges(unsigned inside, unsigned joined) {
+  Pairing pairing;
   for (int f = 0; f < 6; ++f) {
-    std::array<int, 4> crossed;  // edges around the face that are crossed; starts after corner 0
+    std::array<int, 4> crossed;  // edges around the face that are crossed
     int count = 0, first_corner = 0;
     for (int k = 0; k < 4; ++k) {
       const int a = kFaces[f][k], b = kFaces[f][(k + 1) % 4];
@@ -58,31 +66,31 @@ Loops FindLoops(unsigned inside, unsigned joined) {
       if (count == 0) first_corner = b;
       crossed[count++] = EdgeBetween(a, b);
     }
-    const auto join = [&](int a, int b) {
-      next[a][degree[a]++] = b;
-      next[b][degree[b]++] = a;
-    };
-    if (count == 2) join(crossed[0], crossed[1]);
-    if (count != 4) continue;
-    // Edges 0 and 1 enclose first_corner.
+    if (count == 0) continue;
+    // On an ambiguous face, crossed edges 0 and 1 enclose first_corner.
     const bool first_inside = inside >> first_corner & 1;
-    if (first_inside != static_cast<bool>(joined >> f & 1)) {
-      join(crossed[0], crossed[1]);
-      join(crossed[2], crossed[3]);
-    } else {
-      join(crossed[1], crossed[2]);
-      join(crossed[3], crossed[0]);
+    const bool around_first = count == 2 || first_inside != static_cast<bool>(joined >> f & 1);
+    if (around_first) pairing.Join(crossed[0], crossed[1]);
+    if (count == 4 && around_first) pairing.Join(crossed[2], crossed[3]);
+    if (count == 4 && !around_first) {
+      pairing.Join(crossed[1], crossed[2]);
+      pairing.Join(crossed[3], crossed[0]);
     }
   }
+  return pairing;
+}
+
+Loops FindLoops(unsigned inside, unsigned joined) {
+  const Pairing pairing = PairCrossedEdges(inside, joined);
   Loops loops;
   loops.loop_of_edge.fill(-1);
   for (int start = 0; start < 12; ++start) {
-    if (degree[start] == 0 || loops.loop_of_edge[start] >= 0) continue;
+    if (pairing.degree[start] == 0 || loops.loop_of_edge[start] >= 0) continue;
     int edge = start;
     while (edge >= 0) {
       loops.loop_of_edge[edge] = loops.count;
       int onward = -1;
-      for (const int other : next[edge])
+      for (const int other : pairing.next[edge])
         if (loops.loop_of_edge[other] < 0) onward = other;
       edge = onward;
     }
@@ -256,43 +264,6 @@ class Extractor {
 
 TriMesh ExtractLevelSet(const DistanceGrid& grid, double level) {
   return Extractor(grid, level).Run();
-}
-
-void ProjectToField(const std::function<double(const Eigen::Vector3d&)>& field, double step,
-                    double reach, TriMesh& mesh) {
-  for (Eigen::Vector3d& vertex : mesh.vertices) {
-    const Eigen::Vector3d start = vertex;
-    for (int iteration = 0; iteration < 3; ++iteration) {
-      Eigen::Vector3d gradient;
-      for (int k = 0; k < 3; ++k) {
-        const Eigen::Vector3d d = step * Eigen::Vector3d::Unit(k);
-        gradient[k] = (field(vertex + d) - field(vertex - d)) / (2 * step);
-      }
-      const double squared = gradient.squaredNorm();
-      if (!(squared > 1e-4)) break;  // a ridge of the field: no direction to go
-      const Eigen::Vector3d moved = vertex - field(vertex) / squared * gradient;
-      if (!((moved - start).norm() <= reach)) break;
-      vertex = moved;
-    }
-  }
-}
-
-void SmoothTangentially(int rounds, TriMesh& mesh) {
-  for (int round = 0; round < rounds; ++round) {
-    const std::vector<Eigen::Vector3d> normals = VertexNormals(mesh);
-    std::vector<Eigen::Vector3d> sum(mesh.vertices.size(), Eigen::Vector3d::Zero());
-    std::vector<int> count(mesh.vertices.size(), 0);
-    for (const auto& t : mesh.triangles)
-      for (int k = 0; k < 3; ++k) {  // every edge is seen once from each of its triangles
-        sum[t[k]] += mesh.vertices[t[(k + 1) % 3]];
-        ++count[t[k]];
-      }
-    for (std::size_t i = 0; i < sum.size(); ++i) {
-      if (count[i] == 0) continue;
-      const Eigen::Vector3d move = (sum[i] / count[i] - mesh.vertices[i]) / 2;
-      mesh.vertices[i] += move - normals[i].dot(move) * normals[i];
-    }
-  }
 }
 
 }  // namespace dexremoe

@@ -22,7 +22,7 @@ struct H5Format {
 // Where a file comes from.
 struct Provenance {
   std::string tool;
-  std::string options;              // Options::Text()
+  std::string options;  // Options::Text()
   std::uint64_t seed = 0;
   std::vector<std::string> inputs;  // paths; stored as "basename xxh3-128" lines
 };
@@ -84,7 +84,8 @@ class H5Reader {
 
   const std::string& path() const { return path_; }
   bool Has(const std::string& name) const;
-  // `dims` are the expected extents, -1 for any. Throws Error naming file, dataset, expected, found.
+  // `dims` are the expected extents, -1 for any. Throws Error naming file, dataset, expected,
+  // found.
   template <typename T>
   H5Array<T> Read(const std::string& name, const std::vector<std::int64_t>& dims) const;
   template <typename T>

@@ -16,18 +16,26 @@ std::vector<std::int64_t> AnyExtents(const H5Reader& file, const std::string& na
   return std::vector<std::int64_t>(file.Dims(name).size(), -1);
 }
 
-// Calls visit(values) with the dataset's values in their own type. False for text and unknown types.
+// Calls visit(values) with the dataset's values in their own type. False for text and unknown
+// types.
 template <typename Visit>
 bool VisitNumbers(const H5Reader& file, const std::string& name, Visit visit) {
   const std::string type = file.TypeName(name);
   const auto any = AnyExtents(file, name);
-  if (type == "float64") visit(file.ReadValues<double>(name, any));
-  else if (type == "float32") visit(file.ReadValues<float>(name, any));
-  else if (type == "int32") visit(file.ReadValues<std::int32_t>(name, any));
-  else if (type == "int64") visit(file.ReadValues<std::int64_t>(name, any));
-  else if (type == "uint64") visit(file.ReadValues<std::uint64_t>(name, any));
-  else if (type == "uint8") visit(file.ReadValues<std::uint8_t>(name, any));
-  else return false;
+  if (type == "float64")
+    visit(file.ReadValues<double>(name, any));
+  else if (type == "float32")
+    visit(file.ReadValues<float>(name, any));
+  else if (type == "int32")
+    visit(file.ReadValues<std::int32_t>(name, any));
+  else if (type == "int64")
+    visit(file.ReadValues<std::int64_t>(name, any));
+  else if (type == "uint64")
+    visit(file.ReadValues<std::uint64_t>(name, any));
+  else if (type == "uint8")
+    visit(file.ReadValues<std::uint8_t>(name, any));
+  else
+    return false;
   return true;
 }
 
@@ -80,11 +88,12 @@ std::string DescribeDataset(const H5Reader& file, const std::string& name, std::
     summary = file.TypeName(name) == "string" ? TextSummary(file.ReadStrings(name)) : "not shown";
   const std::string unit = file.DatasetAttribute(name, "unit");
   const std::string dims = file.DatasetAttribute(name, "dims");
-  std::string text = fmt::format("{:<{}}  {:<8} {:<14} {:<8} {}\n", name, width,
-                                 file.TypeName(name), ExtentsText(file.Dims(name)),
-                                 unit.empty() ? "-" : unit, summary);
+  std::string text =
+      fmt::format("{:<{}}  {:<8} {:<14} {:<8} {}\n", name, width, file.TypeName(name),
+                  ExtentsText(file.Dims(name)), unit.empty() ? "-" : unit, summary);
   const std::string doc = file.DatasetAttribute(name, "doc");
-  return text + fmt::format("{:<{}}  {}{}\n", "", width, dims.empty() ? "" : "(" + dims + ") ", doc);
+  return text +
+         fmt::format("{:<{}}  {}{}\n", "", width, dims.empty() ? "" : "(" + dims + ") ", doc);
 }
 
 template <typename T>
@@ -95,8 +104,8 @@ double Difference(const std::vector<T>& a, const std::vector<T>& b, std::size_t&
     const auto x = static_cast<double>(a[i]), y = static_cast<double>(b[i]);
     if (std::isnan(x) && std::isnan(y)) continue;
     double d = std::abs(x - y);
-    if (std::isnan(d)) d = HUGE_VAL;                       // one of them is NaN
-    if (d == 0) d = std::numeric_limits<double>::min();    // integers beyond 2^53
+    if (std::isnan(d)) d = HUGE_VAL;                     // one of them is NaN
+    if (d == 0) d = std::numeric_limits<double>::min();  // integers beyond 2^53
     if (d > largest) {
       largest = d;
       where = i;
@@ -160,8 +169,8 @@ std::string FirstDifference(const std::string& a, const std::string& b) {
 
 std::string DescribeH5(const std::string& path) {
   const H5Reader file(path);
-  std::string text = fmt::format("{} version {}\n", file.Attribute("format"),
-                                 file.Attribute("format_version"));
+  std::string text =
+      fmt::format("{} version {}\n", file.Attribute("format"), file.Attribute("format_version"));
   text += fmt::format("made by {} {} with seed {}\n", file.Attribute("tool"),
                       file.Attribute("version"), file.Attribute("seed"));
   if (const std::string inputs = file.Attribute("inputs"); !inputs.empty())
@@ -180,7 +189,8 @@ std::string PrintH5Values(const std::string& path, const std::string& dataset) {
   const H5Reader file(path);
   if (!file.Has(dataset)) Fail("{}: dataset '{}' is missing", path, dataset);
   const std::vector<std::int64_t> dims = file.Dims(dataset);
-  const auto width = static_cast<std::size_t>(dims.size() < 2 ? 1 : std::max<std::int64_t>(1, dims.back()));
+  const auto width =
+      static_cast<std::size_t>(dims.size() < 2 ? 1 : std::max<std::int64_t>(1, dims.back()));
   std::string text;
   const bool number = VisitNumbers(file, dataset, [&](const auto& values) {
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -206,11 +216,12 @@ H5Comparison CompareH5(const std::string& path_a, const std::string& path_b, dou
   std::set<std::string> names(names_a.begin(), names_a.end());
   names.insert(names_b.begin(), names_b.end());
   for (const std::string& name : names) {
-    if (!a.Has(name) || !b.Has(name))
-      result.differences.push_back(
-          fmt::format("{}: only in {}", name, a.Has(name) ? path_a : path_b));
-    else
+    const bool in_a = std::binary_search(names_a.begin(), names_a.end(), name);
+    const bool in_b = std::binary_search(names_b.begin(), names_b.end(), name);
+    if (in_a && in_b)
       CompareDataset(a, b, name, tolerance, result.differences);
+    else
+      result.differences.push_back(fmt::format("{}: only in {}", name, in_a ? path_a : path_b));
   }
   return result;
 }

@@ -159,8 +159,9 @@ TEST(Options, ARequiredOptionThatIsMissingIsNamed) {
 }
 
 TEST(Options, ConfigFilesStandBetweenDefaultsAndTheCommandLine) {
-  const std::string first = WriteConfig("first", "[test_tool]\nwhole = 10\nreal = 2\nflag = true\n"
-                                                 "[sim]\nengine = \"lanes\"\n");
+  const std::string first = WriteConfig("first",
+                                        "[test_tool]\nwhole = 10\nreal = 2\nflag = true\n"
+                                        "[sim]\nengine = \"lanes\"\n");
   const std::string second = WriteConfig("second", "[test_tool]\nwhole = 11\ntext = \"x\"\n");
   Tool tool;
   tool.Parse({"--config=" + first, "--config=" + second, "--text=y"});

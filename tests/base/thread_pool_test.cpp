@@ -57,12 +57,11 @@ TEST(ThreadPool, WorkersRunAtTheSameTime) {
 TEST(ThreadPool, AnExceptionReachesTheCallerAndThePoolLivesOn) {
   ThreadPool pool(3);
   for (int job = 0; job < 20; ++job) {
-    EXPECT_THROW(
-        pool.ParallelFor(50,
-                         [](int chunk, int) {
-                           if (chunk == 7) throw std::runtime_error("seven");
-                         }),
-        std::runtime_error);
+    EXPECT_THROW(pool.ParallelFor(50,
+                                  [](int chunk, int) {
+                                    if (chunk == 7) throw std::runtime_error("seven");
+                                  }),
+                 std::runtime_error);
     std::atomic<int> count{0};
     pool.ParallelFor(50, [&](int, int) { ++count; });
     EXPECT_EQ(count.load(), 50);

@@ -108,9 +108,11 @@ TEST(Evaluation, ResultsDependNeitherOnEnvironmentsNorOnWorkers) {
   }
 }
 
-// Matrix products of a few rows are rounded otherwise than those of many; a chaotic episode shows it.
+// Matrix products of a few rows are rounded otherwise than those of many; a chaotic episode shows
+// it.
 TEST(Evaluation, APolicysResultsDoNotDependOnTheBatchEither) {
-  const std::string path = (std::filesystem::path(::testing::TempDir()) / "eval_policy.h5").string();
+  const std::string path =
+      (std::filesystem::path(::testing::TempDir()) / "eval_policy.h5").string();
   const EvalSetup setup = SmallSetup();
   StageStart start{{}, {}, MakeShapeTable(setup.objects), 3};
   PolicyOptions policy;
@@ -153,10 +155,9 @@ TEST(Evaluation, ATraceIsTheEpisodeThatWasEvaluated) {
   ASSERT_EQ(traces.size(), 3u);
   for (std::size_t i = 0; i < traces.size(); ++i) {
     const EpisodeTrace& trace = traces[i];
-    const EpisodeRecord& record =
-        *std::find_if(runs[0].episodes.begin(), runs[0].episodes.end(), [&](const auto& e) {
-          return e.object == jobs[i].object && e.episode == jobs[i].episode;
-        });
+    const EpisodeRecord& record = *std::find_if(
+        runs[0].episodes.begin(), runs[0].episodes.end(),
+        [&](const auto& e) { return e.object == jobs[i].object && e.episode == jobs[i].episode; });
     EXPECT_EQ(trace.object, setup.objects[record.object].name);
     EXPECT_EQ(trace.length(), record.length);
     EXPECT_EQ(std::count(trace.success.begin(), trace.success.end(), 1), record.successes);

@@ -59,8 +59,9 @@ std::string CurveText(double slope) {
 }
 
 TEST_F(Figures, CurvesAreDrawnInBothFormatsWithDataAndScriptBeside) {
-  const Figure figure = CurvesFigure({{"a \"quoted\" run", Csv(CurveText(0.1))},
-                                      {"other_run", Csv(CurveText(0.2))}}, "samples", {}, 0.1);
+  const Figure figure =
+      CurvesFigure({{"a \"quoted\" run", Csv(CurveText(0.1))}, {"other_run", Csv(CurveText(0.2))}},
+                   "samples", {}, 0.1);
   WriteFigure(Stem("sub/curves"), figure);
   for (const char* ending : {".png", ".pdf", ".dat", ".gp"})
     EXPECT_TRUE(fs::exists(Stem("sub/curves") + ending)) << ending;
@@ -84,7 +85,8 @@ TEST_F(Figures, EqualFiguresGiveEqualBytes) {
 TEST_F(Figures, TheScriptDrawsTheFigureAgainByItself) {
   WriteFigure(Stem("again"), CurvesFigure({{"run", Csv(CurveText(0.1))}}, "samples", {"kl"}, 0));
   fs::remove(Stem("again.png"));
-  EXPECT_EQ(std::system(("cd " + folder_.string() + " && gnuplot again.gp 2> /dev/null").c_str()), 0);
+  EXPECT_EQ(std::system(("cd " + folder_.string() + " && gnuplot again.gp 2> /dev/null").c_str()),
+            0);
   EXPECT_TRUE(fs::exists(Stem("again.png")));
 }
 
@@ -108,8 +110,8 @@ TEST_F(Figures, AMissingColumnOrEmptyTableIsNamed) {
 }
 
 TEST_F(Figures, SmoothingLeavesAStraightLineStraight) {
-  const Figure figure = CurvesFigure({{"run", Csv(CurveText(0.5))}}, "samples",
-                                     {"successes_per_episode"}, 0.3);
+  const Figure figure =
+      CurvesFigure({{"run", Csv(CurveText(0.5))}}, "samples", {"successes_per_episode"}, 0.3);
   std::istringstream lines(figure.data);
   int rows = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -158,8 +160,8 @@ TEST_F(Figures, TheMapIsDrawnInEveryColouring) {
   Embedding map;
   Rng rng(1, Stream::kTest);
   for (int o = 0; o < 7; ++o) {
-    map.objects.push_back({"object_" + std::to_string(o), "shoe", o % 3, o % 2,
-                           rng.Normal(), rng.Normal()});
+    map.objects.push_back(
+        {"object_" + std::to_string(o), "shoe", o % 3, o % 2, rng.Normal(), rng.Normal()});
     for (int k = 0; k < 5; ++k) {
       map.row_object.push_back(o);
       map.position.push_back(map.objects[o].x + 0.1 * rng.Normal());
@@ -188,8 +190,8 @@ TEST(Labels, DoNotOverlapEachOtherOrMarkersAndStayOnTheCanvas) {
     EXPECT_GE(labels[i].x - 0.2, -1e-9);
     EXPECT_LE(labels[i].x + 0.2, 12 + 1e-9);
     for (int j = 0; j < 60; ++j) {
-      EXPECT_TRUE(i == j || apart(labels[i].x, labels[i].y, 0.4, 0.3, labels[j].x, labels[j].y,
-                                  0.4, 0.3));
+      EXPECT_TRUE(i == j ||
+                  apart(labels[i].x, labels[i].y, 0.4, 0.3, labels[j].x, labels[j].y, 0.4, 0.3));
       EXPECT_TRUE(
           apart(labels[i].x, labels[i].y, 0.4, 0.3, requests[j].x, requests[j].y, 0.2, 0.2));
     }

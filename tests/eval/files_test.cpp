@@ -1,73 +1,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <functional>
 
-#include "base/error.h"
 #include "base/random.h"
 #include "eval/embedding.h"
-#include "eval/eval_file.h"
 #include "eval/report.h"
-#include "eval/tables.h"
 #include "eval/trace.h"
-#include "io/atomic_file.h"
-#include "io/csv.h"
+#include "sample_eval.h"
 
 namespace dexremoe {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Not;
-
-std::string Path(const std::string& name) {
-  return (std::filesystem::path(::testing::TempDir()) /
-          ("eval_test_" + std::to_string(getpid()) + "_" + name))
-      .string();
-}
-
-std::string Message(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-// Six training objects and two others, both tolerances, ten episodes each.
-EvalFile SampleEval(double skill, std::uint64_t seed = 1) {
-  EvalFile eval;
-  eval.policy = "base.h5";
-  eval.engine = "ode";
-  eval.substeps = 2;
-  eval.seed = seed;
-  for (int o = 0; o < 8; ++o)
-    eval.objects.push_back({"object_" + std::to_string(o), "train", o < 6 ? "train" : "ood"});
-  for (const double tolerance : {0.4, 0.1}) {
-    EvalRun& run = eval.runs.emplace_back();
-    run.tolerance = tolerance;
-    Rng rng(seed, Stream::kTest);
-    for (int o = 0; o < 8; ++o)
-      for (int e = 0; e < 10; ++e) {
-        EpisodeRecord r;
-        r.object = o;
-        r.episode = static_cast<std::uint64_t>(e);
-        r.length = 100 + static_cast<int>(rng.Index(501));
-        r.end = r.length == 600 ? EpisodeEnd::kTimeout : EpisodeEnd::kFall;
-        r.successes = static_cast<int>(skill * tolerance * (o + 1) * rng.Uniform());
-        r.total_reward = rng.Normal();
-        r.mean_angle = rng.Uniform();
-        r.mean_distance = 0.01 * rng.Uniform();
-        run.episodes.push_back(r);
-      }
-    run.metrics = ComputeMetrics(run.episodes, {100, seed});
-  }
-  return eval;
-}
 
 TEST(EvalFile, ComesBackWhole) {
   const std::string path = Path("eval.h5");
@@ -189,111 +134,6 @@ TEST(Trace, AnotherFormatIsRefused) {
   const std::string path = Path("not_a_trace.h5");
   WriteEval(path, SampleEval(5), {"test", "", 1, {}});
   EXPECT_THAT(Message([&] { ReadTrace(path); }), HasSubstr("expected format dexremoe.trace"));
-}
-
-TEST(PaperNumbers, TheTableHasAllMethodsSplitsAndMetrics) {
-  const auto numbers = ReadPaperNumbers("data/paper_tables.csv");
-  EXPECT_EQ(numbers.size(), 10u * 2 * 5);
-  const auto find = [&](const std::string& method, const std::string& split, const std::string& m) {
-    for (const PaperNumber& n : numbers)
-      if (n.method == method && n.split == split && n.metric == m) return n.value;
-    return double{NAN};
-  };
-  EXPECT_EQ(find("DexReMoE", "train", "s_mean"), 19.62);
-  EXPECT_EQ(find("MMoE", "ood", "s_worst5"), 8.67);
-  // In every row: worst five <= mean <= best five <= max, and min <= worst five.
-  for (const PaperNumber& n : numbers) {
-    EXPECT_LE(find(n.method, n.split, "s_min"), find(n.method, n.split, "s_worst5"));
-    EXPECT_LE(find(n.method, n.split, "s_worst5"), find(n.method, n.split, "s_mean"));
-    EXPECT_LE(find(n.method, n.split, "s_mean"), find(n.method, n.split, "s_best5"));
-    EXPECT_LE(find(n.method, n.split, "s_best5"), find(n.method, n.split, "s_max"));
-  }
-}
-
-TEST(PaperNumbers, UnknownMetricsAreNamed) {
-  const std::string path = Path("paper.csv");
-  WriteFile(path, "table,method,split,metric,value\n1,DR,train,s_medium,3\n");
-  EXPECT_THAT(Message([&] { ReadPaperNumbers(path); }), HasSubstr("s_medium"));
-  WriteFile(path, "table,method,split,metric,value\n1,DR,test,s_min,3\n");
-  EXPECT_THAT(Message([&] { ReadPaperNumbers(path); }), HasSubstr("found 'test'"));
-}
-
-TEST(Tables, PaperRowsStandBelowOursAtTheirToleranceOnly) {
-  const std::vector<MethodResults> methods = {{"Base", {SampleEval(5)}}, {"Ours", {SampleEval(9)}}};
-  const auto tables =
-      MakeTables(methods, ReadPaperNumbers("data/paper_tables.csv"), "1", {50, 1});
-  ASSERT_EQ(tables.size(), 4u);  // two splits, two tolerances
-  for (const ResultTable& table : tables) {
-    EXPECT_EQ(table.rows.size(), table.tolerance == 0.4 ? 12u : 2u);
-    EXPECT_EQ(table.rows[1].label, "Ours");
-    EXPECT_FALSE(table.rows[1].paper);
-    EXPECT_THAT(table.caption, HasSubstr(table.split == "train" ? "6 training" : "2 out-of"));
-    EXPECT_THAT(table.caption, HasSubstr("1 seed;"));
-    EXPECT_THAT(table.caption, HasSubstr("engine ode with 2 substeps"));
-  }
-  EXPECT_EQ(tables[0].rows[11].label, "DexReMoE");
-  EXPECT_EQ(tables[0].rows[11].values[4].value, 19.62);
-}
-
-TEST(Tables, MarkdownColumnsLineUp) {
-  const std::vector<MethodResults> methods = {{"Bäse", {SampleEval(5)}},
-                                              {"A much longer name", {SampleEval(9)}}};
-  const std::string text = MarkdownOf(MakeTables(methods, {}, "1", {50, 1}));
-  std::size_t width = 0, lines = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = text.find('\n', at);
-    const std::string line = text.substr(at, end - at);
-    at = end + 1;
-    if (line.empty() || line[0] != '|') {
-      width = 0;
-      continue;
-    }
-    std::size_t shown = 0;
-    for (const char c : line) shown += (c & 0xC0) != 0x80;
-    if (width == 0) width = shown;
-    EXPECT_EQ(shown, width) << line;
-    ++lines;
-  }
-  EXPECT_EQ(lines, 4u * 4);
-}
-
-TEST(Tables, LatexEscapesAndCsvIsATable) {
-  const std::vector<MethodResults> methods = {{"Base_1 & 5%", {SampleEval(5)}}};
-  const auto tables = MakeTables(methods, ReadPaperNumbers("data/paper_tables.csv"), "1", {50, 1});
-  const std::string latex = LatexOf(tables);
-  EXPECT_THAT(latex, HasSubstr("Base\\_1 \\& 5\\%"));
-  EXPECT_THAT(latex, HasSubstr("\\toprule"));
-  EXPECT_THAT(latex, HasSubstr("$\\bar S_{5-}$"));
-  const std::string path = Path("table.csv");
-  WriteFile(path, CsvOf(tables));
-  const CsvTable csv = CsvTable::Read(path);
-  EXPECT_EQ(csv.num_rows(), 4u * 8 + 2 * 10 * 5);
-  WriteFile(path, ObjectCsvOf(methods, {50, 1}));
-  const CsvTable objects = CsvTable::Read(path);
-  EXPECT_EQ(objects.num_rows(), 16u);  // eight objects at two tolerances
-  EXPECT_EQ(objects.Numbers("episodes")[0], 10);
-}
-
-TEST(Tables, SeedsOfAMethodArePooled) {
-  const EvalFile a = SampleEval(5, 1), b = SampleEval(9, 2);
-  const auto tables = MakeTables({{"Both", {a, b}}}, {}, "1", {50, 1});
-  EXPECT_THAT(tables[0].caption, HasSubstr("120 episodes a method, 2 seeds"));
-  double mean = 0;
-  for (int o = 0; o < 6; ++o)
-    mean += (a.runs[0].metrics.objects[o].values[0].value +
-             b.runs[0].metrics.objects[o].values[0].value) / 12;
-  EXPECT_NEAR(tables[0].rows[0].values[4].value, mean, 1e-12);
-}
-
-TEST(Tables, MethodsOfOtherObjectsOrEnginesAreRefused) {
-  EvalFile other = SampleEval(5);
-  other.objects[2].name = "stranger";
-  EXPECT_THAT(Message([&] { MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, "1", {1, 1}); }),
-              HasSubstr("B: expected the same train objects as A"));
-  other = SampleEval(5);
-  other.substeps = 4;
-  EXPECT_THAT(Message([&] { MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, "1", {1, 1}); }),
-              HasSubstr("substeps"));
 }
 
 TEST(LogRatios, AreCentredAndInvariantToScale) {

@@ -20,7 +20,7 @@ std::vector<double> Clusters(int clusters, int each, int d, double apart, std::u
   return x;
 }
 
-TEST(Tsne, RowEntropyIsTheLogOfThePerplexity) {
+TEST(Tsne, AffinitiesAreSymmetricAndSumToOneAtAnyScale) {
   const int n = 60, d = 3;
   std::vector<double> x = Clusters(3, n / 3, d, 8, 1);
   for (double& value : x) value *= 1e-5;  // the width adapts to the scale of the data
@@ -42,8 +42,8 @@ TEST(Tsne, RowEntropyIsTheLogOfThePerplexity) {
     EXPECT_TRUE(value == 0 || std::abs(value - 1.0 / 6) < 1e-6);
 }
 
-// The symmetric matrix hides single rows: for two points mirrored about the others, rows can be
-// recovered. Here all rows are alike by symmetry (a regular polygon), so 2 n p_ij / 2 = p_j|i.
+// The symmetric matrix hides single rows. On a regular polygon all rows are alike, so the
+// conditional affinities are n p_ij.
 TEST(Tsne, PerplexityIsReachedOnARegularPolygon) {
   const int n = 24;
   std::vector<double> x;
@@ -174,6 +174,31 @@ TEST(Tsne, BadRowsAreNamed) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("row 6"), std::string::npos) << error.what();
   }
+}
+
+TEST(Clusters, TheNumberOfClustersThatWasMadeIsFound) {
+  for (const int made : {2, 3, 5}) {
+    const int each = 15, d = 5, n = made * each;
+    const std::vector<double> x = Clusters(made, each, d, 30, 20 + made);
+    const Clustering found = ClusterPoints(x, n, d, 8, 1);
+    EXPECT_EQ(found.clusters, made);
+    EXPECT_GT(found.silhouette, 0.7);
+    for (int i = 0; i < n; ++i) {
+      EXPECT_EQ(found.label[i], found.label[i / each * each]);
+      for (int j = 0; j < i; ++j) EXPECT_EQ(found.label[i] == found.label[j], i / each == j / each);
+    }
+  }
+}
+
+TEST(Clusters, LargerClustersComeFirstAndFewPointsAreOneCluster) {
+  std::vector<double> x;
+  for (int i = 0; i < 12; ++i) x.push_back(i < 4 ? 0.01 * i : 10 + 0.01 * i);
+  const Clustering found = ClusterPoints(x, 12, 1, 4, 1);
+  EXPECT_EQ(found.clusters, 2);
+  EXPECT_EQ(found.label[11], 0);
+  EXPECT_EQ(found.label[0], 1);
+  EXPECT_EQ(ClusterPoints({1, 1, 1, 1}, 4, 1, 3, 1).clusters, 1);
+  EXPECT_EQ(ClusterPoints({1, 2}, 2, 1, 3, 1).clusters, 1);
 }
 
 // A referee for the preservation measures: the identity keeps everything; a shuffle keeps what

@@ -72,8 +72,7 @@ TEST(H5, EveryTypeComesBackBitForBit) {
   EXPECT_TRUE(std::isinf(real.values[3]));
   EXPECT_EQ(real.values[4], 5e-324);
   EXPECT_THAT(file.ReadValues<float>("deep/down/single", {2}), ElementsAre(0.1f, 2));
-  EXPECT_THAT(file.ReadValues<std::int32_t>("i32", {-1}),
-              ElementsAre(-2147483647 - 1, 2147483647));
+  EXPECT_THAT(file.ReadValues<std::int32_t>("i32", {-1}), ElementsAre(-2147483647 - 1, 2147483647));
   EXPECT_THAT(file.ReadValues<std::int64_t>("i64", {1}),
               ElementsAre(std::numeric_limits<std::int64_t>::min()));
   EXPECT_THAT(file.ReadValues<std::uint64_t>("u64", {1}), ElementsAre(~0ull));
@@ -113,7 +112,9 @@ TEST(H5, TwoEqualWritesGiveEqualBytes) {
 
 TEST(H5, AnInputThatIsMissingIsNamedAndLeavesNothing) {
   const std::string path = Path("orphan.h5");
-  EXPECT_THAT(Message([&] { H5Writer(path, kFormat, {"t", "", 1, {"/nowhere/mesh.h5"}}); }),
+  EXPECT_THAT(Message([&] {
+                H5Writer(path, kFormat, {"t", "", 1, {"/nowhere/mesh.h5"}});
+              }),
               HasSubstr("/nowhere/mesh.h5"));
   EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
 }
@@ -131,20 +132,28 @@ TEST(H5, WithoutCommitNothingIsLeft) {
 TEST(H5, MessagesNameFileFieldExpectedAndFound) {
   const std::string path = Path("messages.h5");
   WriteSample(path);
-  EXPECT_THAT(Message([&] { H5Reader(path, {"dexremoe.mesh", 3}); }),
+  EXPECT_THAT(Message([&] {
+                H5Reader(path, {"dexremoe.mesh", 3});
+              }),
               AllOf(HasSubstr(path), HasSubstr("dexremoe.mesh"), HasSubstr("dexremoe.test")));
-  EXPECT_THAT(Message([&] { H5Reader(path, {"dexremoe.test", 4}); }),
+  EXPECT_THAT(Message([&] {
+                H5Reader(path, {"dexremoe.test", 4});
+              }),
               AllOf(HasSubstr(path), HasSubstr("version 4"), HasSubstr("version 3")));
   const H5Reader file(path, kFormat);
   EXPECT_THAT(Message([&] { file.Read<double>("absent", {1}); }),
               AllOf(HasSubstr(path), HasSubstr("'absent' is missing")));
   EXPECT_THAT(Message([&] { file.Read<double>("deep/absent/x", {1}); }), HasSubstr("is missing"));
   EXPECT_THAT(Message([&] { file.Read<double>("deep", {1}); }), HasSubstr("found a group"));
-  EXPECT_THAT(Message([&] { file.Read<float>("real", {2, 3}); }),
+  EXPECT_THAT(Message([&] {
+                file.Read<float>("real", {2, 3});
+              }),
               AllOf(HasSubstr("'real'"), HasSubstr("expected float32, found float64")));
   EXPECT_THAT(Message([&] { file.Read<double>("names", {3}); }),
               HasSubstr("expected float64, found string"));
-  EXPECT_THAT(Message([&] { file.Read<double>("real", {-1, 4}); }),
+  EXPECT_THAT(Message([&] {
+                file.Read<double>("real", {-1, 4});
+              }),
               HasSubstr("expected extents [any, 4], found [2, 3]"));
   EXPECT_THAT(Message([&] { file.Read<double>("real", {6}); }), HasSubstr("found [2, 3]"));
   EXPECT_THAT(Message([&] { file.ReadScalar<double>("real"); }), HasSubstr("expected extents []"));
@@ -165,7 +174,10 @@ TEST(H5, ForeignAndDamagedFilesAreRefused) {
   const std::string whole = ReadFile(path);
   for (const double part : {0.1, 0.5, 0.9, 0.999}) {
     WriteFile(path, whole.substr(0, static_cast<std::size_t>(part * whole.size())));
-    EXPECT_NE(Message([&] { H5Reader(path, kFormat).Read<double>("real", {2, 3}); }), "no error")
+    EXPECT_NE(Message([&] {
+                H5Reader(path, kFormat).Read<double>("real", {2, 3});
+              }),
+              "no error")
         << part;
   }
 }
@@ -178,7 +190,9 @@ TEST(H5, LongOptionTextsAreKeptOrRefused) {
     file.Commit();
   }
   EXPECT_EQ(H5Reader(path).Attribute("options"), text);
-  EXPECT_THAT(Message([&] { H5Writer(path, kFormat, {"t", std::string(70000, 'x'), 1, {}}); }),
+  EXPECT_THAT(Message([&] {
+                H5Writer(path, kFormat, {"t", std::string(70000, 'x'), 1, {}});
+              }),
               AllOf(HasSubstr(path), HasSubstr("options")));
   EXPECT_EQ(H5Reader(path).Attribute("options"), text);
   EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
@@ -246,6 +260,12 @@ TEST(H5Inspect, MissingDatasetsTypesExtentsAndLargeIntegersDiffer) {
   write(Path("b.h5"), 1.0, 3, false);
   EXPECT_THAT(CompareH5(Path("a.h5"), Path("b.h5"), 9).differences,
               ElementsAre(HasSubstr("x: extents [2] against [3]")));
+  // A group in one file, a dataset in the other.
+  H5Writer file(Path("b.h5"), kFormat, {"t", "", 1, {}});
+  file.WriteScalar("x/y", 1.0, kDoc);
+  file.Commit();
+  EXPECT_THAT(CompareH5(Path("a.h5"), Path("b.h5"), 0).differences,
+              ElementsAre(HasSubstr("x: only in"), HasSubstr("x/y: only in")));
   // Neighbours beyond 2^53 are equal as doubles.
   write(Path("a.h5"), std::uint64_t{1} << 60, 1, false);
   write(Path("b.h5"), (std::uint64_t{1} << 60) + 1, 1, false);

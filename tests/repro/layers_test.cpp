@@ -25,7 +25,7 @@ const std::map<std::string, std::string> kOwners = {
     {"spdlog/sinks", "base"}, {"hdf5", "io"},      {"png.h", "io"},
     {"xxhash.h", "io"},    {"assimp/", "geometry"}, {"libqhull", "geometry"},
     {"dnnl", "nn"},        {"oneapi/dnnl", "nn"},  {"pcl/", "shape"},
-    {"urdf", "hand"},      {"ode/", "sim/ode"},    {"ccd/", "sim/ode"},
+    {"urdf", "hand"},       {"console_bridge/", "hand"},      {"ode/", "sim/ode"},    {"ccd/", "sim/ode"},
     {"GL/", "render"},     {"ft2build.h", "render"}, {"freetype/", "render"}};
 
 std::vector<fs::path> Sources(const std::string& folder) {

@@ -80,7 +80,7 @@ Tumble TumbleFor(int substeps) {
 }
 
 // ODE's gyroscopic term keeps the torque-free motion: the errors are of first order in the step.
-// Without it the angular velocity would stay constant and the momentum swing by tens of percent.
+// (Without it the angular velocity stays constant and the momentum turns with the body.)
 TEST(Motion, MomentumAndEnergyErrorsOfATumblingBodyAreOfFirstOrder) {
   const Tumble coarse = TumbleFor(4), middle = TumbleFor(8), fine = TumbleFor(16);
   std::printf("tumbling for 1 s: momentum error %.3g %.3g %.3g, energy %.3g %.3g %.3g\n",
@@ -93,7 +93,7 @@ TEST(Motion, MomentumAndEnergyErrorsOfATumblingBodyAreOfFirstOrder) {
   EXPECT_NEAR(middle.energy_error / fine.energy_error, 2, 0.6);
 }
 
-TEST(Motion, ScaleAndMassSetTheInertia) {
+TEST(Motion, APushThroughTheCentreAcceleratesByItsForceOverMassAndTurnsNothing) {
   // A push through the centre turns nothing; acceleration is force / mass at any scale.
   Rig rig(SimOptions(), scenes::PalmOnly(), {scenes::Cube()});
   for (const double scale : {0.8, 1.3}) {
