@@ -19,7 +19,7 @@ quick: deps  ## meshes to tables, figures and films at small size (about 15 minu
 
 # The learning check: base policy against the untrained network on one cube.
 .PHONY: cube cube-products
-cube: deps  ## train on a single cube and compare with the untrained network (about 25 minutes)
+cube: deps  ## train on a single cube and compare with the untrained network (about 15 minutes)
 	+@$(MAKE) $(JOBS) --no-print-directory build
 	$(BIN)/make_objects --recipes=data/shapes --out=meshes/shapes
 	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 OBJECTS=meshes/shapes CONFIG=data/config/cube.toml \

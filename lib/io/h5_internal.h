@@ -37,6 +37,16 @@ hid_t NativeType() {
   if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_NATIVE_UINT8;
 }
 
+// Before the first HDF5 call: errors are ours to report, and HDF5's exit handler stays off. It
+// crashes on a file whose close failed (a full disk); every file here is closed where it is opened.
+inline void StartHdf5() {
+  static const bool started = [] {
+    H5dont_atexit();
+    return H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  }();
+  (void)started;
+}
+
 // Number of elements.
 inline std::int64_t Count(const std::vector<std::int64_t>& dims) {
   return std::accumulate(dims.begin(), dims.end(), std::int64_t{1}, std::multiplies<>());

@@ -70,7 +70,7 @@ H5Reader::H5Reader(std::string path, H5Format format) : path_(std::move(path)) {
 }
 
 void H5Reader::Open() {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  internal::StartHdf5();
   if (!std::filesystem::exists(path_)) Fail("{}: no such file", path_);
   file_ = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file_ < 0) Fail("{}: expected an HDF5 file, found something else or a truncated one", path_);

@@ -81,7 +81,7 @@ Provenance MakeProvenance(const Options& options, std::uint64_t seed,
 
 H5Writer::H5Writer(std::string path, H5Format format, const Provenance& provenance)
     : path_(std::move(path)), temporary_(PrepareTemporary(path_)) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  internal::StartHdf5();
   std::string inputs;
   for (const std::string& input : provenance.inputs) inputs += HashLine(input);
   file_ = H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
