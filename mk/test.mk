@@ -16,9 +16,14 @@ endef
 $(foreach m,$(TEST_MODULES),$(eval $(call test_rules,$(m))))
 
 # Optional real inputs: make test OBJECTS=DIR HAND=FILE runs the tests on them, else they skip.
+# Exported only when given: an empty variable is not an unset one.
 export DEX_BIN := $(BUILD)/bin
-export DEX_REAL_MESHES := $(if $(filter builtin,$(OBJECTS)),,$(OBJECTS))
-export DEX_REAL_HAND := $(if $(filter data/hand/gx11.urdf,$(HAND)),,$(HAND))
+ifneq ($(OBJECTS),builtin)
+export DEX_REAL_MESHES := $(OBJECTS)
+endif
+ifneq ($(HAND),data/hand/gx11.urdf)
+export DEX_REAL_HAND := $(HAND)
+endif
 
 .PHONY: test test-slow test-programs
 test-programs: build $(TEST_PROGRAMS)
