@@ -10,8 +10,9 @@ CXX      ?= g++
 INCLUDES = $(addprefix -isystem ,$(wildcard /usr/include/pcl-*)) \
   $(patsubst -I%,-isystem %,$(shell pkg-config --cflags eigen3 hdf5-serial freetype2))
 PKG_LIBS = $(shell pkg-config --libs hdf5-serial ode assimp ccd urdfdom fmt libpng libxxhash freetype2) \
-  -lOSMesa -lqhullcpp -lqhull_r -ldnnl -lspdlog \
-  -lpcl_common -lpcl_filters -lpcl_features -lpcl_search -lpcl_kdtree -lpcl_io
+  -lOSMesa -lhwy -lqhullcpp -lqhull_r -ldnnl -lspdlog \
+  -lpcl_common -lpcl_filters -lpcl_features -lpcl_search -lpcl_kdtree -lpcl_io \
+  $(if $(wildcard /usr/include/mujoco/mujoco.h),-lmujoco)
 
 # One baseline architecture: the packaged PCL and Eigen code must agree on alignment.
 # No -ffast-math: runs are reproducible bit for bit.
@@ -45,6 +46,14 @@ $(TOOLS:%=$(BUILD)/bin/%): $(BUILD)/bin/%: $(BUILD)/obj/tools/%.o $(ARCHIVES)
 	@mkdir -p $(@D)
 	@echo '  LINK $@'
 	@$(CXX) $(LDFLAGS) -Wl,--as-needed $< $(LINK_ORDER) $(LIBS) -o $@
+
+# The lanes engine's kernels: one source for all instruction sets, chosen when the program runs.
+# Products and sums may fuse. clang 14 makes them a few percent faster than g++ 12; either will do.
+KERNEL_CXX ?= $(if $(shell command -v clang++),clang++,$(CXX))
+$(BUILD)/obj/lib/sim/lanes/lanes_kernel.o: lib/sim/lanes/lanes_kernel.cpp
+	@mkdir -p $(@D)
+	@echo '  CXX  $<  ($(KERNEL_CXX))'
+	@$(KERNEL_CXX) $(DEX_CXXFLAGS) $(CXXFLAGS) -O3 -ffp-contract=fast -c $< -o $@
 
 .SECONDARY:
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

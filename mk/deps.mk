@@ -4,7 +4,7 @@ DEBIAN_PACKAGES := g++ make pkg-config ca-certificates \
   libode-dev libeigen3-dev libassimp-dev libpcl-dev libccd-dev libhdf5-dev libosmesa6-dev \
   libdnnl-dev libcli11-dev libspdlog-dev libfmt-dev libtomlplusplus-dev liburdfdom-dev \
   liburdfdom-headers-dev libqhull-dev libpng-dev libfreetype-dev libxxhash-dev libgtest-dev libgmock-dev \
-  libbenchmark-dev gnuplot-nox fonts-dejavu-core ffmpeg
+  libbenchmark-dev libhwy-dev gnuplot-nox fonts-dejavu-core ffmpeg
 
 .PHONY: deps
 deps:  ## install the Debian packages that are missing (or print the line that does)

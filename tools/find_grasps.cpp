@@ -48,7 +48,10 @@ void Run(const FindGraspsOptions& o, const Options& options) {
   WriteGrasps(o.out, set, MakeProvenance(options, o.seed, {o.mesh, o.parts, o.hand.urdf}));
   fmt::print("object      {}\n", object.name);
   fmt::print("grasps      {} of {}\n", set.grasps.size(), counts.Text());
-  fmt::print("acceptance  {:.1f} %\n", 100 * set.acceptance);
+  fmt::print("acceptance  {:.1f} % on {}\n", 100.0 * counts.accepted / counts.tried, o.sim.engine);
+  if (o.grasp.certify != "none")
+    fmt::print("certified   {:.1f} % of them on {}\n", 100.0 * counts.certified / counts.accepted,
+               o.grasp.certify);
   fmt::print("rate        {:.1f} accepted/s, {:.0f} candidates/s on {} threads ({:.1f} s)\n",
              counts.accepted / seconds, counts.tried / seconds, pool.workers(), seconds);
 }

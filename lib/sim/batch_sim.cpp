@@ -3,13 +3,20 @@
 #include <utility>
 
 #include "base/error.h"
+#include "sim/lanes/lanes_sim.h"
+#include "sim/mujoco/mujoco_sim.h"
 #include "sim/ode/ode_sim.h"
 
 namespace dexremoe {
 
 void SimOptions::Register(Options& options) {
-  options.Add("sim.engine", &engine, "physics engine: ode").Choices({"ode", "lanes"});
+  options.Add("sim.engine", &engine, "physics engine: lanes (fast), ode, or mujoco (to check)")
+      .Choices({"ode", "lanes", "mujoco"});
   options.Add("sim.substeps", &substeps, "physics steps per control step").Range(1, 64);
+  options.Add("sim.inner_steps", &inner_steps, "lanes: time steps per physics step").Range(1, 16);
+  options.Add("sim.iterations", &iterations, "lanes: solver sweeps per time step").Range(1, 100);
+  options.Add("sim.instructions", &instructions, "lanes: instruction set").Choices(
+      {"auto", "avx512", "avx2", "sse4", "portable"});
   options.Add("sim.control_rate", &control_rate, "control steps per second, Hz").Range(1, 1000);
   options.Add("sim.gravity", &gravity, "gravity along the palm's normal, m/s^2").Range(-100, 100);
   options.Add("sim.max_contacts", &max_contacts, "hand-object contact points kept").Range(1, 64);
@@ -37,10 +44,14 @@ EnvState BatchSim::GetState(int env) const {
 std::unique_ptr<BatchSim> MakeBatchSim(const SimOptions& options, const HandModel& hand,
                                        std::vector<SimObject> objects, int num_envs,
                                        ThreadPool& pool) {
+  if (objects.empty()) Fail("simulator: expected at least one object");
+  if (num_envs < 1) Fail("simulator: expected at least one environment, found {}", num_envs);
   if (options.engine == "ode") return MakeOdeSim(options, hand, std::move(objects), num_envs, pool);
   if (options.engine == "lanes")
-    Fail("sim.engine: this version has no engine 'lanes' yet; use 'ode'");
-  Fail("sim.engine: expected ode or lanes, found '{}'", options.engine);
+    return MakeLanesSim(options, hand, std::move(objects), num_envs, pool);
+  if (options.engine == "mujoco")
+    return MakeMujocoSim(options, hand, std::move(objects), num_envs, pool);
+  Fail("sim.engine: expected ode, lanes or mujoco, found '{}'", options.engine);
 }
 
 }  // namespace dexremoe

@@ -28,7 +28,7 @@ void WriteGrasps(const std::string& path, const GraspSet& set, const Provenance&
   file.Write("object_position", position, {G, 3}, {"m", "grasp, xyz", "centre of mass in W"});
   file.Write("object_rotation", rotation, {G, 4}, {"1", "grasp, wxyz", "unit quaternion q_WO"});
   file.Write("scale", scale, {G}, {"1", "grasp", "size factor of the object"});
-  file.WriteScalar("acceptance", set.acceptance, {"1", "", "accepted / tried candidates"});
+  file.WriteScalar("acceptance", set.acceptance, {"1", "", "kept / tried candidates"});
   file.Commit();
 }
 

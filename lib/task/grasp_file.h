@@ -13,7 +13,7 @@ inline constexpr H5Format kGraspsFormat = {"dexremoe.grasps", 1};
 
 struct GraspSet {
   std::vector<Grasp> grasps;  // all of one hand: equally many joints
-  double acceptance = 0;      // accepted / tried candidates
+  double acceptance = 0;      // kept (accepted, and certified where asked for) / tried candidates
 };
 
 void WriteGrasps(const std::string& path, const GraspSet& set, const Provenance& provenance);

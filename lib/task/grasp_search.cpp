@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "base/random.h"
 #include "task/episode.h"
-#include "task/rotation.h"
+#include "task/grasp_hold.h"
 
 namespace dexremoe {
 namespace {
+
+using internal::FoundGrasp;
 
 constexpr int kRound = 128;     // candidates at a time; part of the result
 constexpr double kReach = 0.3;  // rad that a closing target may lead its joint
@@ -25,15 +28,16 @@ class Round {
         sim_options_(sim_options),
         hand_(hand),
         sim_(sim),
+        rule_(options, task, hand, sim_options.control_rate),
         joints_(hand.num_joints()) {
     targets_.resize(static_cast<std::size_t>(kRound) * joints_);
     squeeze_.resize(kRound);
-    scale_.resize(kRound);
+    physics_.resize(kRound);
   }
 
   // Tries candidates first .. first + kRound - 1 and appends what holds.
   void Run(std::uint64_t seed, std::uint64_t object_key, int first, GraspCounts& counts,
-           std::vector<Grasp>& grasps) {
+           std::vector<FoundGrasp>& found) {
     active_.assign(kRound, 1);
     for (int env = 0; env < kRound; ++env) {
       Rng rng(seed, Stream::kGrasp, {object_key, static_cast<std::uint64_t>(first + env)});
@@ -46,16 +50,18 @@ class Round {
       for (int env = 0; env < kRound; ++env) Close(env);
       sim_.Step(targets_, active_);
     }
-    Drop(counts.no_grip, [&](int env) { return !Gripped(env); });
+    Drop(counts.no_grip, [&](int env) { return !rule_.Gripped(sim_.state(), env); });
     for (int env = 0; env < kRound; ++env) sim_.SetHeld(env, false);
     for (int step = 0; step < options_.hold_steps; ++step) {
       before_ = sim_.state();
       sim_.Step(targets_, active_);
-      Drop(counts.dropped, [&](int env) { return DistanceOf(env) > options_.max_distance; });
+      Drop(counts.dropped, [&](int env) { return !rule_.Near(sim_.state(), env); });
     }
-    Drop(counts.moving, [&](int env) { return !AtRest(env) || !Gripped(env); });
+    Drop(counts.moving, [&](int env) {
+      return !rule_.AtRest(before_, sim_.state(), env) || !rule_.Gripped(sim_.state(), env);
+    });
     for (int env = 0; env < kRound; ++env)
-      if (active_[env]) grasps.push_back(GraspOf(env)), ++counts.accepted;
+      if (active_[env]) found.push_back({GraspOf(env), physics_[env]}), ++counts.accepted;
   }
 
  private:
@@ -81,11 +87,10 @@ class Round {
     const std::array<double, 4> u = rng.UnitQuaternion();
     start.X_WO.q = Eigen::Quaterniond(u[0], u[1], u[2], u[3]);
     squeeze_[env] = rng.Uniform(options_.squeeze[0], options_.squeeze[1]);
-    EnvPhysics physics;
+    EnvPhysics& physics = physics_[env];
     physics.mass = rng.Uniform(task_.mass_range[0], task_.mass_range[1]);
     physics.friction = rng.Uniform(task_.friction_range[0], task_.friction_range[1]);
-    physics.scale = scale_[env] =
-        task_.scale * rng.Uniform(task_.scale_range[0], task_.scale_range[1]);
+    physics.scale = task_.scale * rng.Uniform(task_.scale_range[0], task_.scale_range[1]);
     physics.gravity = {0, 0, sim_options_.gravity};
     sim_.SetObject(env, 0, physics);
     sim_.SetState(env, start);
@@ -99,7 +104,7 @@ class Round {
     const std::size_t row = static_cast<std::size_t>(env) * joints_;
     for (std::size_t f = 0; f < hand_.chains.size(); ++f) {
       const std::vector<int>& chain = hand_.chains[f];
-      const double reach = Touches(env, f) ? squeeze_[env] : kReach;
+      const double reach = rule_.Touches(state, env, f) ? squeeze_[env] : kReach;
       for (std::size_t k = chain.size() < 2 ? 0 : chain.size() - 2; k < chain.size(); ++k) {
         const int j = chain[k];
         double& target = targets_[row + j];
@@ -109,37 +114,6 @@ class Round {
     }
   }
 
-  bool Touches(int env, std::size_t finger) const {
-    return sim_.state().tip_contact[env * hand_.chains.size() + finger] != 0;
-  }
-
-  // The thumb and at least one other finger touch.
-  bool Gripped(int env) const {
-    bool other = false;
-    for (std::size_t f = 1; f < hand_.chains.size(); ++f) other = other || Touches(env, f);
-    return Touches(env, 0) && other;
-  }
-
-  double DistanceOf(int env) const {
-    return (Eigen::Vector3d(&sim_.state().object_position[3 * env]) -
-            Eigen::Vector3d(task_.grasp_center.data()))
-        .norm();
-  }
-
-  static Eigen::Quaterniond RotationOf(const SimState& state, int env) {
-    const double* q = &state.object_rotation[4 * env];
-    return {q[0], q[1], q[2], q[3]};
-  }
-
-  bool AtRest(int env) const {
-    const double rate = sim_options_.control_rate;
-    const Eigen::Vector3d moved = Eigen::Vector3d(&sim_.state().object_position[3 * env]) -
-                                  Eigen::Vector3d(&before_.object_position[3 * env]);
-    return moved.norm() * rate <= options_.max_speed &&
-           RotationDistance(RotationOf(sim_.state(), env), RotationOf(before_, env)) * rate <=
-               options_.max_spin;
-  }
-
   Grasp GraspOf(int env) const {
     const std::size_t row = static_cast<std::size_t>(env) * joints_;
     const EnvState state = sim_.GetState(env);
@@ -147,7 +121,7 @@ class Round {
     grasp.q = state.q;
     grasp.target.assign(targets_.begin() + row, targets_.begin() + row + joints_);
     grasp.X_WO = {state.X_WO.q.normalized(), state.X_WO.p};
-    grasp.scale = scale_[env];
+    grasp.scale = physics_[env].scale;
     return grasp;
   }
 
@@ -156,12 +130,26 @@ class Round {
   const SimOptions& sim_options_;
   const HandModel& hand_;
   BatchSim& sim_;
+  internal::HoldRule rule_;
   int joints_;
   std::vector<double> targets_;  // [kRound, J], rad
-  std::vector<double> squeeze_, scale_;
+  std::vector<double> squeeze_;
+  std::vector<EnvPhysics> physics_;
   std::vector<std::uint8_t> active_;
   SimState before_;  // one control step back
 };
+
+// Leaves what holds on the certifying engine too.
+void DropRefused(internal::Certifier& certifier, GraspCounts& counts,
+                 std::vector<FoundGrasp>& found) {
+  const std::vector<std::uint8_t> holds = certifier.Certify(found);
+  std::vector<FoundGrasp> kept;
+  for (std::size_t g = 0; g < found.size(); ++g)
+    if (holds[g]) kept.push_back(std::move(found[g]));
+  counts.certified += static_cast<int>(kept.size());
+  counts.refused += static_cast<int>(found.size() - kept.size());
+  found = std::move(kept);
+}
 
 }  // namespace
 
@@ -180,6 +168,10 @@ void GraspOptions::Register(Options& options) {
       .Range(1e-4, 1);
   options.Add("grasp.max_speed", &max_speed, "m/s, object, after it").Range(1e-6, 100);
   options.Add("grasp.max_spin", &max_spin, "rad/s, object, after it").Range(1e-6, 1000);
+  options.Add("grasp.certify", &certify, "engine on which grasps must hold besides sim.engine")
+      .Choices({"none", "ode", "lanes", "mujoco"});
+  options.Add("grasp.certify_substeps", &certify_substeps, "its physics steps per control step")
+      .Range(1, 64);
 }
 
 void GraspOptions::Check(const HandModel& hand) const {
@@ -197,30 +189,46 @@ void GraspOptions::Check(const HandModel& hand) const {
 }
 
 std::string GraspCounts::Text() const {
-  return fmt::format("{} tried: {} blocked, {} without grip, {} dropped, {} moving, {} accepted",
-                     tried, blocked, no_grip, dropped, moving, accepted);
+  std::string text =
+      fmt::format("{} tried: {} blocked, {} without grip, {} dropped, {} moving, {} accepted",
+                  tried, blocked, no_grip, dropped, moving, accepted);
+  if (certified + refused > 0)
+    text += fmt::format(", {} certified, {} refused", certified, refused);
+  return text;
 }
 
-GraspSet FindGrasps(const GraspOptions& options, const TaskOptions& task, const SimOptions& sim,
-                    const HandModel& hand, const SimObject& object, std::uint64_t seed,
-                    ThreadPool& pool, GraspCounts* counts) {
+GraspSet TryFindGrasps(const GraspOptions& options, const TaskOptions& task, const SimOptions& sim,
+                       const HandModel& hand, const SimObject& object, std::uint64_t seed,
+                       ThreadPool& pool, GraspCounts* counts) {
   options.Check(hand);
   task.Check();
   const auto engine = MakeBatchSim(sim, hand, {object}, kRound, pool);
   Round round(options, task, sim, hand, *engine);
+  std::optional<internal::Certifier> certifier;
+  if (options.certify != "none") certifier.emplace(options, task, sim, hand, object, kRound, pool);
   const std::uint64_t key = internal::ObjectKey(object.name);
   *counts = {};
   GraspSet set;
   Progress progress(object.name, options.count);
   while (static_cast<int>(set.grasps.size()) < options.count &&
          counts->tried < options.candidates) {
-    round.Run(seed, key, counts->tried, *counts, set.grasps);
+    std::vector<FoundGrasp> found;
+    round.Run(seed, key, counts->tried, *counts, found);
+    if (certifier) DropRefused(*certifier, *counts, found);
+    for (const FoundGrasp& one : found) set.grasps.push_back(one.grasp);
     progress.Update(std::min<double>(set.grasps.size(), options.count));
   }
   progress.Finish();
-  if (set.grasps.empty()) Fail("{}: no grasp found: {}", object.name, counts->Text());
-  set.acceptance = static_cast<double>(counts->accepted) / counts->tried;
+  set.acceptance = static_cast<double>(set.grasps.size()) / counts->tried;
   if (static_cast<int>(set.grasps.size()) > options.count) set.grasps.resize(options.count);
+  return set;
+}
+
+GraspSet FindGrasps(const GraspOptions& options, const TaskOptions& task, const SimOptions& sim,
+                    const HandModel& hand, const SimObject& object, std::uint64_t seed,
+                    ThreadPool& pool, GraspCounts* counts) {
+  GraspSet set = TryFindGrasps(options, task, sim, hand, object, seed, pool, counts);
+  if (set.grasps.empty()) Fail("{}: no grasp found: {}", object.name, counts->Text());
   return set;
 }
 

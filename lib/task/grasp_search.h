@@ -29,6 +29,10 @@ struct GraspOptions {
   double max_distance = 0.03;  // m from grasp_center after holding
   double max_speed = 0.03;     // m/s, object, over the last control step
   double max_spin = 0.4;       // rad/s
+  // Engine on which a grasp has to hold too, by the same conditions, before it is kept: "none",
+  // "ode", "lanes" or "mujoco".
+  std::string certify = "none";
+  int certify_substeps = 2;
   void Register(Options& options);  // section "grasp"
   // Throws UsageError for lists that do not fit the hand.
   void Check(const HandModel& hand) const;
@@ -37,11 +41,13 @@ struct GraspOptions {
 // Why candidates were dropped.
 struct GraspCounts {
   int tried = 0;
-  int blocked = 0;   // the open hand or the palm already touches the object
-  int no_grip = 0;   // after closing, the thumb and another finger do not both touch
-  int dropped = 0;   // slipped too far while holding
-  int moving = 0;    // still near but not at rest, or held by fewer fingers
-  int accepted = 0;  // beyond `count` too: counts are of whole rounds
+  int blocked = 0;    // the open hand or the palm already touches the object
+  int no_grip = 0;    // after closing, the thumb and another finger do not both touch
+  int dropped = 0;    // slipped too far while holding
+  int moving = 0;     // still near but not at rest, or held by fewer fingers
+  int accepted = 0;   // beyond `count` too: counts are of whole rounds
+  int certified = 0;  // of the accepted: hold on the certifying engine
+  int refused = 0;    // of the accepted: do not hold there
   std::string Text() const;
 };
 
@@ -54,5 +60,10 @@ struct GraspCounts {
 GraspSet FindGrasps(const GraspOptions& options, const TaskOptions& task, const SimOptions& sim,
                     const HandModel& hand, const SimObject& object, std::uint64_t seed,
                     ThreadPool& pool, GraspCounts* counts);
+
+// The same, but gives an empty set when none is found.
+GraspSet TryFindGrasps(const GraspOptions& options, const TaskOptions& task, const SimOptions& sim,
+                       const HandModel& hand, const SimObject& object, std::uint64_t seed,
+                       ThreadPool& pool, GraspCounts* counts);
 
 }  // namespace dexremoe

@@ -1,13 +1,113 @@
-// Small hands and objects for the simulator's tests.
+// Small hands and objects for the simulator's tests, and what these expect of each engine.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
 #include "sim/batch_sim.h"
+#include "sim/mujoco/mujoco_sim.h"
 
 namespace dexremoe::scenes {
+
+// Where engines rightly differ; everything else holds for all of them alike.
+struct Engine {
+  std::string name;
+  std::vector<int> substeps;  // of 1/60 s, for the contact tests
+  double round_off = 0;       // of a state set and read back, in its own units
+  // Absolute errors against the closed forms of the integrator.
+  double free_speed = 0, free_distance = 0;  // m/s, m
+  double servo_speed = 0, servo_angle = 0;   // rad/s, rad
+  // Height of a resting body over the surface below it.
+  double rest_gap = 0, rest_gap_error = 0;  // m
+  double slip_angle = 0;                    // largest error against atan mu; degrees
+  double impact_depth = 0;                  // deepest overlap of a cube that fell 12 cm; m
+  double stop_time = 0;  // s; a joint runs into its stop as far as its speed takes it in this time
+};
+
+inline void PrintTo(const Engine& engine, std::ostream* out) { *out << engine.name; }
+
+inline std::vector<Engine> Engines() {
+  Engine ode;
+  ode.name = "ode";
+  ode.substeps = {1, 2, 4};
+  ode.round_off = 1e-9;  // joint angles are read off quaternions
+  ode.free_speed = 1e-12;
+  ode.free_distance = 1e-10;
+  // Bodies turn by a first-order step of the quaternion: third order in h qd.
+  ode.servo_speed = 5e-3;
+  ode.servo_angle = 2e-4;
+  // A skin of 0.1 mm keeps surfaces apart.
+  ode.rest_gap = 1e-4;
+  ode.rest_gap_error = 2e-5;
+  ode.slip_angle = 0.5;
+  ode.impact_depth = 2e-3;
+  ode.stop_time = 1.0 / 240;  // a substep of four
+
+  Engine lanes;
+  lanes.name = "lanes";
+  // At one substep a fall of 12 cm ends 6 mm deep.
+  lanes.substeps = {2, 4};
+  // float32 at 3 m, a hundred steps of it, and at 1 rad.
+  lanes.round_off = 5e-7;
+  lanes.free_speed = 2e-5;
+  lanes.free_distance = 1e-4;
+  lanes.servo_speed = 1e-4;
+  lanes.servo_angle = 1e-5;
+  // An overlap of up to 0.3 mm is left alone.
+  lanes.rest_gap_error = 1e-4;
+  // Normals come from the gradient of a sampled distance field.
+  lanes.slip_angle = 2;
+  lanes.impact_depth = 2e-3;
+  lanes.stop_time = 1.0 / 240;
+
+  Engine mujoco;
+  mujoco.name = "mujoco";
+  mujoco.substeps = {16};  // the referee's 1 ms
+  mujoco.round_off = 1e-14;
+  mujoco.free_speed = 1e-12;
+  mujoco.free_distance = 1e-10;
+  mujoco.servo_speed = 1e-9;
+  mujoco.servo_angle = 1e-9;
+  // Contacts and stops are critically damped springs with time constants of 6 and 2 ms.
+  mujoco.rest_gap = -2e-5;
+  mujoco.rest_gap_error = 2e-5;
+  mujoco.slip_angle = 0.3;
+  mujoco.impact_depth = 3e-3;
+  mujoco.stop_time = 2e-3;
+  return {ode, lanes, mujoco};
+}
+
+// A test that runs on every engine; it skips those that this build does not have.
+class OnEveryEngine : public testing::TestWithParam<Engine> {
+ protected:
+  void SetUp() override {
+    if (GetParam().name == "mujoco" && !MujocoAvailable())
+      GTEST_SKIP() << "this build has no MuJoCo (libmujoco-dev)";
+  }
+  SimOptions Options(int substeps = 2) const {
+    SimOptions options;
+    options.engine = GetParam().name;
+    options.substeps = substeps;
+    return options;
+  }
+  // Length of the integrator's step; s.
+  static double TimeStep(const SimOptions& options) {
+    const int inner = options.engine == "lanes" ? options.inner_steps : 1;
+    return 1 / (options.control_rate * options.substeps * inner);
+  }
+};
+
+inline std::string EngineName(const testing::TestParamInfo<Engine>& info) {
+  return info.param.name;
+}
+
+#define DEX_RUN_ON_EVERY_ENGINE(suite)                                                       \
+  INSTANTIATE_TEST_SUITE_P(Engines, suite, testing::ValuesIn(::dexremoe::scenes::Engines()), \
+                           ::dexremoe::scenes::EngineName)
 
 inline TriMesh BoxMesh(const Eigen::Vector3d& size,
                        const Eigen::Vector3d& center = Eigen::Vector3d::Zero()) {

@@ -14,11 +14,13 @@ using scenes::Rig;
 
 constexpr double kInertia = 1e-4;  // of the link; kg m^2
 
-Rig MakeRig(const HandModel& hand, int substeps) {
-  SimOptions options;
-  options.substeps = substeps;
-  return Rig(options, hand, {scenes::Cube()});
-}
+class Servo : public scenes::OnEveryEngine {
+ protected:
+  Rig MakeRig(const HandModel& hand, int substeps) const {
+    return Rig(Options(substeps), hand, {scenes::Cube()});
+  }
+};
+DEX_RUN_ON_EVERY_ENGINE(Servo);
 
 EnvState AtAngle(double q, double qd = 0) {
   EnvState state = scenes::StateAt(1, {0, 0, 5});
@@ -28,30 +30,32 @@ EnvState AtAngle(double q, double qd = 0) {
 }
 
 // (A + I) (qd' - qd) / h = kp (target - q - h qd') - kd qd', q' = q + h qd'.
-TEST(Servo, StepResponseEqualsTheImplicitEulerRecursion) {
+TEST_P(Servo, StepResponseEqualsTheImplicitEulerRecursion) {
   for (const int substeps : {1, 2, 4}) {
     const HandModel hand = scenes::Rotor(kInertia);
     Rig rig = MakeRig(hand, substeps);
     rig->SetState(0, AtAngle(0.1, -0.5));
-    const double target = 0.4, h = 1.0 / (60 * substeps), inertia = hand.armature + kInertia;
+    const double target = 0.4, h = TimeStep(Options(substeps)), inertia = hand.armature + kInertia;
     double q = 0.1, qd = -0.5;
     for (int step = 0; step < 30; ++step) {
       rig->Step(std::vector<double>{target});
-      for (int i = 0; i < substeps; ++i) {
+      for (int i = 0; i < std::lround(1 / (60 * h)); ++i) {
         qd = (inertia / h * qd + hand.kp * (target - q)) / (inertia / h + h * hand.kp + hand.kd);
         q += h * qd;
       }
-      // ODE turns bodies by a first-order step of the quaternion: third order in h qd.
-      EXPECT_NEAR(rig->GetState(0).q[0], q, 2e-4) << "substeps " << substeps << " step " << step;
-      EXPECT_NEAR(rig->GetState(0).qd[0], qd, 5e-3);
+      EXPECT_NEAR(rig->GetState(0).q[0], q, GetParam().servo_angle)
+          << "substeps " << substeps << " step " << step;
+      EXPECT_NEAR(rig->GetState(0).qd[0], qd, GetParam().servo_speed);
     }
     EXPECT_NEAR(q, target, 0.01);
   }
 }
 
-TEST(Servo, GainFactorsScaleTheGains) {
+TEST_P(Servo, GainFactorsScaleTheGains) {
   const HandModel hand = scenes::Rotor(kInertia);
-  Rig rig = MakeRig(hand, 1);
+  SimOptions options = Options(1);
+  options.inner_steps = 1;
+  Rig rig(options, hand, {scenes::Cube()});
   EnvPhysics physics;
   physics.kp_factor = 0.5;
   physics.kd_factor = 2;
@@ -63,7 +67,7 @@ TEST(Servo, GainFactorsScaleTheGains) {
               1e-4);
 }
 
-TEST(Servo, ALimitedTorqueAcceleratesRotorAndLinkUniformly) {
+TEST_P(Servo, ALimitedTorqueAcceleratesRotorAndLinkUniformly) {
   HandModel hand = scenes::Rotor(kInertia);
   hand.joints[0].torque_limit = 0.05;
   Rig rig = MakeRig(hand, 2);
@@ -77,7 +81,7 @@ TEST(Servo, ALimitedTorqueAcceleratesRotorAndLinkUniformly) {
 
 // A horizontal arm with a load of 0.4905 N m: a little more torque lifts it, a little less lowers
 // it.
-TEST(Servo, TheTorqueLimitIsWhatALoadedJointGives) {
+TEST_P(Servo, TheTorqueLimitIsWhatALoadedJointGives) {
   for (const double limit : {0.47, 0.51}) {
     HandModel hand = scenes::Rotor(kInertia);
     hand.links[1].mass = 0.5;
@@ -92,7 +96,7 @@ TEST(Servo, TheTorqueLimitIsWhatALoadedJointGives) {
   }
 }
 
-TEST(Servo, TheSpeedLimitIsReachedAndHolds) {
+TEST_P(Servo, TheSpeedLimitIsReachedAndHolds) {
   HandModel hand = scenes::Rotor(kInertia);
   hand.joints[0].torque_limit = 0.5;
   hand.joints[0].speed_limit = 6.2;
@@ -107,13 +111,13 @@ TEST(Servo, TheSpeedLimitIsReachedAndHolds) {
   EXPECT_GT(fastest, 5.9);
 }
 
-TEST(Servo, JointLimitsHoldAgainstALoad) {
+TEST_P(Servo, JointLimitsHoldAgainstALoad) {
   HandModel hand = scenes::Rotor(kInertia);
   hand.links[1].mass = 0.5;
   hand.links[1].com = {0.1, 0, 0};
   hand.joints[0].lower = -0.5;
   hand.joints[0].torque_limit = 0.1;  // the load wins and falls onto the stop
-  Rig rig = MakeRig(hand, 2);
+  Rig rig = MakeRig(hand, GetParam().substeps.back());
   rig->SetState(0, AtAngle(0.2));
   double deepest = 0, fastest = 0;
   for (int step = 0; step < 120; ++step) {
@@ -121,11 +125,11 @@ TEST(Servo, JointLimitsHoldAgainstALoad) {
     fastest = std::max(fastest, std::abs(rig->GetState(0).qd[0]));
     deepest = std::max(deepest, -0.5 - rig->GetState(0).q[0]);
   }
-  EXPECT_LT(deepest, fastest / 120);  // no farther than one substep's way
+  EXPECT_LT(deepest, fastest * GetParam().stop_time);
   EXPECT_NEAR(rig->GetState(0).q[0], -0.5, 1e-3);
 }
 
-TEST(Servo, TargetsBeyondTheLimitsCountAsTheLimits) {
+TEST_P(Servo, TargetsBeyondTheLimitsCountAsTheLimits) {
   const HandModel hand = scenes::Rotor(kInertia);
   Rig rig = MakeRig(hand, 2);
   rig->SetState(0, AtAngle(1.5));
@@ -133,7 +137,7 @@ TEST(Servo, TargetsBeyondTheLimitsCountAsTheLimits) {
   EXPECT_NEAR(rig->GetState(0).q[0], 2, 1e-3);
 }
 
-TEST(Servo, SetStateGivesLinksTheVelocitiesOfTheJoints) {
+TEST_P(Servo, SetStateGivesLinksTheVelocitiesOfTheJoints) {
   HandModel hand = LoadHand(HandOptions());
   hand.kp = 1e-6;
   hand.kd = 0;
@@ -146,8 +150,8 @@ TEST(Servo, SetStateGivesLinksTheVelocitiesOfTheJoints) {
   rig->SetState(0, state);
   const EnvState set = rig->GetState(0);
   for (int j = 0; j < hand.num_joints(); ++j) {
-    EXPECT_NEAR(set.q[j], state.q[j], 1e-9) << hand.joints[j].name;
-    EXPECT_NEAR(set.qd[j], state.qd[j], 1e-9) << hand.joints[j].name;
+    EXPECT_NEAR(set.q[j], state.q[j], GetParam().round_off) << hand.joints[j].name;
+    EXPECT_NEAR(set.qd[j], state.qd[j], GetParam().round_off) << hand.joints[j].name;
   }
 }
 

@@ -67,6 +67,54 @@ TEST(GraspSearch, FindsGraspsOfACubeWhateverTheWorkers) {
   EXPECT_GE(kept, 36);
 }
 
+// Found where a step is a whole control step, kept only if four smaller steps agree: every grasp
+// holds when it is replayed there, by the conditions of the search.
+TEST(GraspSearch, CertifiedGraspsHoldOnTheCertifyingEngine) {
+  Search search;
+  search.sim.substeps = 1;
+  search.task.mass_range = {0.08, 0.08};
+  search.task.friction_range = {0.45, 0.45};  // slippery: some grasps hold on one side only
+  search.options.count = 40;
+  search.options.certify = "ode";
+  search.options.certify_substeps = 4;
+  const SimObject cube = Cube(0.05);
+  const GraspSet set = search.Run(cube, 2);
+  const GraspCounts& counts = search.counts;
+  EXPECT_EQ(counts.certified + counts.refused, counts.accepted);
+  EXPECT_GT(counts.refused, 0);
+  ASSERT_GE(counts.certified, static_cast<int>(set.grasps.size()));
+  EXPECT_DOUBLE_EQ(set.acceptance, static_cast<double>(counts.certified) / counts.tried);
+
+  ThreadPool pool(2);
+  SimOptions fine = search.sim;
+  fine.substeps = 4;
+  const int n = static_cast<int>(set.grasps.size());
+  const auto sim = MakeBatchSim(fine, search.hand, {cube}, n, pool);
+  EnvPhysics physics;
+  physics.mass = 0.08;
+  physics.friction = 0.45;
+  std::vector<double> targets;
+  for (int env = 0; env < n; ++env) {
+    const Grasp& grasp = set.grasps[env];
+    sim->SetObject(env, 0, physics);
+    sim->SetState(env, {grasp.q, std::vector<double>(grasp.q.size(), 0.0), grasp.X_WO});
+    targets.insert(targets.end(), grasp.target.begin(), grasp.target.end());
+  }
+  for (int step = 0; step < search.options.hold_steps; ++step) sim->Step(targets);
+  const Eigen::Vector3d center(search.task.grasp_center.data());
+  for (int env = 0; env < n; ++env)
+    EXPECT_LE((sim->GetState(env).X_WO.p - center).norm(), search.options.max_distance) << env;
+}
+
+TEST(GraspSearch, CertificationByTheSameEngineAndStepsRefusesFew) {
+  Search search;
+  search.options.count = 20;
+  search.options.certify = "ode";
+  search.options.certify_substeps = search.sim.substeps;
+  search.Run(Cube(0.05), 2);
+  EXPECT_LE(search.counts.refused, search.counts.accepted / 10);
+}
+
 TEST(GraspSearch, SaysWhyNothingWasFound) {
   Search search;
   search.options.candidates = 128;

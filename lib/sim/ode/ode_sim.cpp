@@ -1,13 +1,13 @@
 #include "sim/ode/ode_sim.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
 #include "base/check.h"
 #include "base/error.h"
 #include "sim/ode/ode_env.h"
+#include "sim/sim_rows.h"
 
 namespace dexremoe {
 namespace {
@@ -22,10 +22,6 @@ struct Chunk {
   int first = 0, last = 0;  // environments [first, last)
   std::vector<std::unique_ptr<OdeEnv>> envs;
 };
-
-bool AllFinite(const double* values, int count) {
-  return std::all_of(values, values + count, [](double v) { return std::isfinite(v); });
-}
 
 class OdeSim : public BatchSim {
  public:
@@ -47,7 +43,8 @@ class OdeSim : public BatchSim {
       }
       chunks_.push_back(std::move(chunk));
     }
-    SizeState();
+    state_ = SizedState(num_envs, model_.hand);
+    steps_.resize(num_envs);
     for (int env = 0; env < num_envs; ++env) envs_[env]->Read(state_, env);
   }
 
@@ -56,17 +53,12 @@ class OdeSim : public BatchSim {
   const SimState& state() const override { return state_; }
 
   void SetObject(int env, int object, const EnvPhysics& physics) override {
-    if (object < 0 || object >= static_cast<int>(model_.objects.size()))
-      Fail("environment {}: object: expected 0..{}, found {}", env, model_.objects.size() - 1,
-           object);
+    CheckObject(env, object, model_.objects.size());
     At(env).SetObject(object, physics);
   }
 
   void SetState(int env, const EnvState& state) override {
-    if (!AllFinite(state.q.data(), num_joints()) || !AllFinite(state.qd.data(), num_joints()) ||
-        !state.X_WO.p.allFinite() || !state.X_WO.q.coeffs().allFinite() || !state.v.allFinite() ||
-        !state.w.allFinite())
-      Fail("environment {}: state to set: expected finite numbers", env);
+    CheckStateToSet(env, state, num_joints());
     At(env).SetState(state);
     envs_[env]->Read(state_, env);
   }
@@ -88,11 +80,8 @@ class OdeSim : public BatchSim {
   void PushObject(int env, const Eigen::Vector3d& force) override { At(env).Push(force); }
 
   void Step(std::span<const double> targets, std::span<const std::uint8_t> active) override {
-    DEX_CHECK_EQ(targets.size(), static_cast<std::size_t>(num_envs_) * num_joints());
-    if (!active.empty()) DEX_CHECK_EQ(active.size(), static_cast<std::size_t>(num_envs_));
-    for (int env = 0; env < num_envs_; ++env)
-      if ((active.empty() || active[env]) && !AllFinite(&targets[env * num_joints()], num_joints()))
-        Fail("environment {}: step {}: target: expected finite angles", env, envs_[env]->steps());
+    for (int env = 0; env < num_envs_; ++env) steps_[env] = envs_[env]->steps();
+    CheckTargets(targets, active, *this, steps_);
     pool_.ParallelFor(static_cast<int>(chunks_.size()), [&](int c, int) {
       PrepareOdeThread();
       Chunk& chunk = *chunks_[c];
@@ -105,7 +94,7 @@ class OdeSim : public BatchSim {
 
  private:
   void StepOne(int env, const double* targets, Chunk& chunk) {
-    const std::int64_t step = envs_[env]->steps();
+    const std::int64_t step = steps_[env];
     std::string failure;
     try {
       envs_[env]->Step(targets, chunk.finder);
@@ -114,7 +103,7 @@ class OdeSim : public BatchSim {
       chunk.arena.Recover();
     }
     envs_[env]->Read(state_, env);
-    CheckFinite(env, step);
+    CheckRow(state_, env, step);
     if (!failure.empty()) Fail("environment {}: step {}: {}", env, step, failure);
   }
 
@@ -124,39 +113,13 @@ class OdeSim : public BatchSim {
     return *envs_[env];
   }
 
-  void SizeState() {
-    const std::size_t n = num_envs_, joints = num_joints();
-    state_.joint_position.resize(n * joints);
-    state_.joint_velocity.resize(n * joints);
-    state_.object_position.resize(n * 3);
-    state_.object_rotation.resize(n * 4);
-    state_.object_velocity.resize(n * 3);
-    state_.object_spin.resize(n * 3);
-    state_.tip_contact.resize(n * model_.hand.chains.size());
-    state_.contact_count.resize(n);
-    state_.max_penetration.resize(n);
-  }
-
-  void CheckFinite(int env, std::int64_t step) const {
-    const auto check = [&](const std::vector<double>& values, int width, const char* field) {
-      if (!AllFinite(&values[static_cast<std::size_t>(env) * width], width))
-        Fail("environment {}: step {}: {}: expected finite numbers (unstable simulation?)", env,
-             step, field);
-    };
-    check(state_.joint_position, num_joints(), "joint_position");
-    check(state_.joint_velocity, num_joints(), "joint_velocity");
-    check(state_.object_position, 3, "object_position");
-    check(state_.object_rotation, 4, "object_rotation");
-    check(state_.object_velocity, 3, "object_velocity");
-    check(state_.object_spin, 3, "object_spin");
-  }
-
   OdeModel model_;
   int num_envs_;
   ThreadPool& pool_;
   std::vector<std::unique_ptr<Chunk>> chunks_;
   std::vector<OdeEnv*> envs_;
   SimState state_;
+  std::vector<std::int64_t> steps_;  // [N] control steps since SetState, before a Step
 };
 
 }  // namespace
@@ -164,8 +127,6 @@ class OdeSim : public BatchSim {
 std::unique_ptr<BatchSim> MakeOdeSim(const SimOptions& options, const HandModel& hand,
                                      std::vector<SimObject> objects, int num_envs,
                                      ThreadPool& pool) {
-  if (objects.empty()) Fail("simulator: expected at least one object");
-  if (num_envs < 1) Fail("simulator: expected at least one environment, found {}", num_envs);
   return std::make_unique<OdeSim>(options, hand, std::move(objects), num_envs, pool);
 }
 
