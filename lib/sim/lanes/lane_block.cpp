@@ -30,6 +30,7 @@ BlockLayout::BlockLayout(int joints_, int chains_, int cores) : joints(joints_),
   kd = take(1);
   com = take(3);
   reach = take(1);
+  box = take(6);
   field = take(1);
   field_scale = take(3);
   field_shift = take(3);

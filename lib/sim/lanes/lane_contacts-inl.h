@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace dexremoe {
 namespace HWY_NAMESPACE {
 
-// Cores are searched for contacts this far from the object's bounding sphere.
+// Cores are searched for contacts this far from the object's bounding sphere and box.
 constexpr float kLook = 6e-3f;  // m
 // What forces may close beyond the present speed within a substep: points that stay farther apart
 // than this are left out.
@@ -30,8 +30,10 @@ constexpr float kDrawBack = 0.25f;
 constexpr float kOvershoot = 1.2f;
 constexpr int kStarts = 4;  // of a core, at most
 
-// The object's distance field in lanes of their own objects.
+// The object's distance field, and what bounds the object, per lane.
 struct Field {
+  F reach;                // bounding sphere about the origin of B; m
+  V3 box_center, box_half;  // in B; m
   I first;     // word
   V3 scale;    // nodes per m
   V3 shift;    // nodes
@@ -46,6 +48,9 @@ HWY_INLINE Field LoadField(const BlockLayout& at, const float* block) {
   field.scale = LoadV3(row(at.field_scale));
   field.shift = LoadV3(row(at.field_shift));
   field.unit = Load(row(at.field_unit));
+  field.reach = Load(row(at.reach));
+  field.box_center = LoadV3(row(at.box));
+  field.box_half = LoadV3(row(at.box + 3));
   field.spacing = {Reciprocal(field.scale.x), Reciprocal(field.scale.y), Reciprocal(field.scale.z)};
   return field;
 }
@@ -126,10 +131,12 @@ struct Contacts {
   F key[kSlots];      // the same for the same core and start
   F tip[kSlots];      // 1 for a fingertip
   F count;
+  int slots;
 
-  HWY_INLINE void Clear() {
+  HWY_INLINE void Clear(int slots_here) {
+    slots = slots_here;
     count = F(0.0f);
-    for (int k = 0; k < kSlots; ++k) {
+    for (int k = 0; k < slots; ++k) {
       // Harmless numbers for lanes that leave the slot empty.
       point[k] = {F(0.0f), F(0.0f), F(0.0f)};
       normal[k] = {F(0.0f), F(0.0f), F(1.0f)};
@@ -151,17 +158,17 @@ struct Contacts {
   // Adds a point in the lanes `where`; in full lanes it takes the place of the shallowest point if
   // it is deeper.
   HWY_INLINE void Add(M where, const V3& p, const V3& n, F g, F of_link, F of_key, F is_tip) {
-    for (int k = 0; k < kSlots; ++k) {
+    for (int k = 0; k < slots; ++k) {
       const M here = And(where, count == F(static_cast<float>(k)));
       if (Any(here)) Put(k, here, p, n, g, of_link, of_key, is_tip);
     }
-    M full = And(where, count == F(static_cast<float>(kSlots)));
-    count = Select(where, Min(count + F(1.0f), F(static_cast<float>(kSlots))), count);
+    M full = And(where, count == F(static_cast<float>(slots)));
+    count = Select(where, Min(count + F(1.0f), F(static_cast<float>(slots))), count);
     if (!Any(full)) return;
     F shallowest = gap[0];
-    for (int k = 1; k < kSlots; ++k) shallowest = Max(shallowest, gap[k]);
+    for (int k = 1; k < slots; ++k) shallowest = Max(shallowest, gap[k]);
     full = And(full, g < shallowest);
-    for (int k = 0; k < kSlots; ++k) {
+    for (int k = 0; k < slots; ++k) {
       const M here = And(full, gap[k] == shallowest);
       Put(k, here, p, n, g, of_link, of_key, is_tip);
       full = AndNot(here, full);
@@ -202,12 +209,22 @@ HWY_INLINE V3 PointAt(const V3& center, const V3* axis, const F* s) {
   return p;
 }
 
+// Whether the core's box along the axes of B overlaps the object's, with room to look around.
+template <int kExtents>
+HWY_INLINE M NearBox(const PlacedCore& core, const F* half, F radius, const Field& field) {
+  const F look = radius + F(kLook);
+  V3 size = {look, look, look};
+  for (int e = 0; e < kExtents; ++e) size = size + AbsOf(core.axis_B[e]) * half[e];
+  const V3 apart = AbsOf(core.center_B - field.box_center) - field.box_half - size;
+  return Max(apart.x, Max(apart.y, apart.z)) < F(0.0f);
+}
+
 // Up to kStarts points of the core nearest to the object: from starts at the core's ends (corners)
 // the point moves to and fro between the object's surface and the core.
 template <int kExtents>
 HWY_NOINLINE void FindContacts(const LanesModel& model, const LaneCore& core, int id, int joint,
                                const HandState& hand, const ObjectState& object, const Field& field,
-                               F reach, F dt, float* inset, Contacts& contacts) {
+                               F dt, float* inset, Contacts& contacts) {
   const PlacedCore placed = Place<kExtents>(core, joint, hand, object);
   const std::int64_t* cells = model.cells.data();
   const F radius(core.radius);
@@ -217,8 +234,9 @@ HWY_NOINLINE void FindContacts(const LanesModel& model, const LaneCore& core, in
     middle[e] = Clamp(-Dot(placed.center_B, placed.axis_B[e]), -half[e], half[e]);
   }
   const V3 nearest = PointAt<kExtents>(placed.center_B, placed.axis_B, middle);
-  const F around = reach + radius, within = around + F(kLook);
-  const M near = Dot(nearest, nearest) < within * within;
+  const F around = field.reach + radius, within = around + F(kLook);
+  const M near =
+      And(Dot(nearest, nearest) < within * within, NearBox<kExtents>(placed, half, radius, field));
   if (!Any(near)) return;
   constexpr int kCount = kExtents == 0 ? 1 : kExtents == 1 ? 2 : kStarts;
   // The starts side by side: each is a long chain of dependent operations.
@@ -274,10 +292,11 @@ HWY_NOINLINE void FindContacts(const LanesModel& model, const LaneCore& core, in
 }
 
 HWY_INLINE void FindAllContacts(const LanesModel& model, const HandState& hand,
-                                const ObjectState& object, const Field& field, F reach, F dt,
+                                const ObjectState& object, const Field& field, F dt,
                                 float* insets, Contacts* contacts) {
   const int chains = static_cast<int>(model.chains.size());
-  for (int group = 0; group <= chains; ++group) contacts[group].Clear();
+  for (int c = 0; c < chains; ++c) contacts[c].Clear(kFingerSlots);
+  contacts[chains].Clear(kSlots);
   for (int id = 0; id < static_cast<int>(model.cores.size()); ++id) {
     const LaneCore& core = model.cores[id];
     const int joint = core.chain < 0 ? -1 : model.chains[core.chain].first + core.link;
@@ -285,16 +304,16 @@ HWY_INLINE void FindAllContacts(const LanesModel& model, const HandState& hand,
     Contacts& group = contacts[core.chain < 0 ? chains : core.chain];
     switch (core.extents) {
       case 0:
-        FindContacts<0>(model, core, id, joint, hand, object, field, reach, dt, inset, group);
+        FindContacts<0>(model, core, id, joint, hand, object, field, dt, inset, group);
         break;
       case 1:
-        FindContacts<1>(model, core, id, joint, hand, object, field, reach, dt, inset, group);
+        FindContacts<1>(model, core, id, joint, hand, object, field, dt, inset, group);
         break;
       case 2:
-        FindContacts<2>(model, core, id, joint, hand, object, field, reach, dt, inset, group);
+        FindContacts<2>(model, core, id, joint, hand, object, field, dt, inset, group);
         break;
       default:
-        FindContacts<3>(model, core, id, joint, hand, object, field, reach, dt, inset, group);
+        FindContacts<3>(model, core, id, joint, hand, object, field, dt, inset, group);
     }
   }
 }
@@ -371,25 +390,27 @@ HWY_INLINE bool SameChains(const LanesModel& model, const LaneCorePair& l, const
          model.cores[l.b].chain == model.cores[r.b].chain;
 }
 
-// Whether in any lane one of the pairs [first, last) is near: by the centres' distance, or by the
-// height above a palm that lies across the third axis of its core.
-HWY_INLINE bool MayMeet(const LanesModel& model, const HandState& hand, std::size_t first,
-                        std::size_t last) {
-  M near = F(1.0f) < F(0.0f);
-  for (std::size_t i = first; i < last; ++i) {
-    const LaneCore &a = model.cores[model.pairs[i].a], &b = model.cores[model.pairs[i].b];
-    const V3 center = PlaceSegment(model, a, hand).center;
-    const float radii = a.half[0] + a.radius + b.radius + 2 * kForceReach;
-    if (b.chain < 0) {
-      const F height = Dot(center - Everywhere(b.center), Everywhere(b.axes + 6));
-      near = Or(near, Abs(height) < F(b.half[2] + radii));
-    } else {
-      const V3 d = center - PlaceSegment(model, b, hand).center;
-      const float reach = radii + b.half[0];
-      near = Or(near, Dot(d, d) < F(reach * reach));
-    }
+// Whether in any lane the ball around a chain's tip meets another chain's, or reaches down to a
+// base core that lies across its third axis (chain_b -1).
+HWY_INLINE bool MayMeet(const LanesModel& model, const V3* tips, int chain_a, int chain_b,
+                        const LaneCore& core_b) {
+  const float radius = model.chains[chain_a].tip_radius + 2 * kForceReach;
+  if (chain_b < 0) {
+    const F height = Dot(tips[chain_a] - Everywhere(core_b.center), Everywhere(core_b.axes + 6));
+    return Any(Abs(height) < F(core_b.half[2] + core_b.radius + radius));
   }
-  return Any(near);
+  const V3 d = tips[chain_a] - tips[chain_b];
+  const float reach = radius + model.chains[chain_b].tip_radius;
+  return Any(Dot(d, d) < F(reach * reach));
+}
+
+HWY_INLINE void PlaceTips(const LanesModel& model, const HandState& hand, V3* tips) {
+  for (std::size_t c = 0; c < model.chains.size(); ++c) {
+    const LaneChain& chain = model.chains[c];
+    if (chain.size == 0) continue;
+    const int last = chain.first + chain.size - 1;
+    tips[c] = hand.origin[last] + hand.R[last] * Everywhere(chain.tip_center);
+  }
 }
 
 // Fills `contacts` with the deepest contact of each pair of chains that may touch within a time
@@ -397,18 +418,20 @@ HWY_INLINE bool MayMeet(const LanesModel& model, const HandState& hand, std::siz
 HWY_NOINLINE int FindSelfContacts(const LanesModel& model, const HandState& hand,
                                   SelfContact* contacts) {
   int count = 0;
+  V3 tips[kMaxChains];
+  PlaceTips(model, hand, tips);
   for (std::size_t k = 0; k < model.pairs.size();) {
     const int chain_a = model.cores[model.pairs[k].a].chain,
               chain_b = model.cores[model.pairs[k].b].chain;
+    const std::size_t first = k;
+    while (k < model.pairs.size() && SameChains(model, model.pairs[first], model.pairs[k])) ++k;
+    if (!MayMeet(model, tips, chain_a, chain_b, model.cores[model.pairs[first].b])) continue;
     SelfContact& contact = contacts[count];
     contact.chain_a = chain_a;
     contact.chain_b = chain_b;
     contact.gap = F(1.0f);
     contact.point = contact.normal = {F(0.0f), F(0.0f), F(0.0f)};
     contact.link_a = contact.link_b = F(-1.0f);
-    const std::size_t first = k;
-    while (k < model.pairs.size() && SameChains(model, model.pairs[first], model.pairs[k])) ++k;
-    if (!MayMeet(model, hand, first, k)) continue;
     for (std::size_t i = first; i < k; ++i) {
       const LaneCore &a = model.cores[model.pairs[i].a], &b = model.cores[model.pairs[i].b];
       const Segment segment = PlaceSegment(model, a, hand);

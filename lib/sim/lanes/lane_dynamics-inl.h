@@ -57,6 +57,8 @@ struct HandState {
   F inverse[kMaxChains][kPackedSize];  // L^-1
   // The servo's row on each joint: inverse inertia, its reciprocal, and that of 1 - h D times it.
   F give[kMaxJoints], stiff[kMaxJoints], relief[kMaxJoints];
+  // Speeds at which a joint reaches its limits in a time step; rad/s.
+  F slowest[kMaxJoints], fastest[kMaxJoints];
   F ask[kMaxJoints];  // the servo's impulse at zero speed: h kp e; N m s
   F kp, damping;      // servo gain; D
 };
@@ -83,7 +85,7 @@ HWY_INLINE void PlaceLink(const LaneLink& link, const Rotation* R_parent, const 
                           HandState& s) {
   const V3 x = Everywhere(link.R_PL), y = Everywhere(link.R_PL + 3), z = Everywhere(link.R_PL + 6);
   const V3 p = Everywhere(link.p_PL);
-  const F sine = hn::Sin(FloatTag(), s.q[i].v), cosine = hn::Cos(FloatTag(), s.q[i].v);
+  const auto [sine, cosine] = SinCos(s.q[i]);
   const V3 turned_x = x * cosine + y * sine, turned_y = y * cosine - x * sine;
   if (R_parent == nullptr) {
     s.origin[i] = p;
@@ -129,8 +131,10 @@ HWY_INLINE void MoveChain(const LanesModel& model, int first, const V3& gravity,
       const V3& axis = s.R[first + k].z;
       const V3 r = com - s.origin[first + k];
       jv[k] = Cross(axis, r);
-      jw[k] = Back(R, axis);
-      const V3 Iw = Inertia(link.inertia, jw[k]);
+      // The link's own axis is its z.
+      jw[k] = k == l ? V3{F(0.0f), F(0.0f), F(1.0f)} : Back(R, axis);
+      const V3 Iw = k == l ? V3{F(link.inertia[4]), F(link.inertia[5]), F(link.inertia[2])}
+                           : Inertia(link.inertia, jw[k]);
       const F load = Dot(jv[k], force) - Dot(axis, torque);
       s.bias[first + k] = k == l ? load : s.bias[first + k] + load;
       for (int n = 0; n <= k; ++n) mass[Packed(k, n)] += m * Dot(jv[k], jv[n]) + Dot(Iw, jw[n]);
@@ -198,11 +202,13 @@ HWY_INLINE F Ask(const LaneLink& link, const HandState& s, F h, int i) {
 
 // Adds servo and bias impulses of a time step to u.
 template <int N>
-HWY_INLINE void DriveChain(const LanesModel& model, int c, F h, HandState& s) {
+HWY_INLINE void DriveChain(const LanesModel& model, int c, F h, F rate, HandState& s) {
   const int first = model.chains[c].first;
   F impulse[N + 1];
   for (int i = 0; i < N; ++i) {
     const int j = first + i;
+    s.slowest[j] = (F(model.links[j].lower) - s.q[j]) * rate;
+    s.fastest[j] = (F(model.links[j].upper) - s.q[j]) * rate;
     s.ask[j] = Ask(model.links[j], s, h, j);
     impulse[i] = h * s.bias[j] + s.ask[j] - h * s.damping * s.qd[j];
   }

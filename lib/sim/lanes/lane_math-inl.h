@@ -10,7 +10,6 @@
 #define DEXREMOE_LANE_MATH_INL_H
 #endif
 
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
 #include <cstdint>
@@ -82,6 +81,29 @@ HWY_INLINE F InverseSqrt(F a) {
 HWY_INLINE F RoughReciprocal(F a) { return hn::ApproximateReciprocal(a.v); }
 HWY_INLINE F RoughInverseSqrt(F a) { return hn::ApproximateReciprocalSqrt(a.v); }
 
+struct SineCosine {
+  F sine, cosine;
+};
+
+// Within 1e-7 for |x| < 100: x = k pi + r, and least-maximum polynomials for |r| < pi / 2.
+HWY_INLINE SineCosine SinCos(F x) {
+  const F k = hn::Round(hn::Mul(x.v, F(0.318309886f).v));
+  const F r = x - k * F(3.14159274f) + k * F(8.7422777e-8f), r2 = r * r;
+  const F sine = r * (F(0.9999999958f) +
+                      r2 * (F(-0.16666658f) +
+                            r2 * (F(0.008333051245f) +
+                                  r2 * (F(-0.0001980908515f) + r2 * F(2.605242734e-6f)))));
+  const F cosine =
+      F(0.9999999998f) +
+      r2 * (F(-0.4999999936f) +
+            r2 * (F(0.04166663628f) +
+                  r2 * (F(-0.001388836161f) +
+                        r2 * (F(2.476016988e-5f) + r2 * F(-2.605162125e-7f)))));
+  const F half = k * F(0.5f), odd = half - F(hn::Floor(half.v));  // 0 or 1/2
+  const F sign = F(1.0f) - F(4.0f) * odd;
+  return {sine * sign, cosine * sign};
+}
+
 struct V3 {
   F x, y, z;
 };
@@ -90,6 +112,7 @@ HWY_INLINE V3 operator+(const V3& a, const V3& b) { return {a.x + b.x, a.y + b.y
 HWY_INLINE V3 operator-(const V3& a, const V3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 HWY_INLINE V3 operator*(const V3& a, F s) { return {a.x * s, a.y * s, a.z * s}; }
 HWY_INLINE V3 Times(const V3& a, const V3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+HWY_INLINE V3 AbsOf(const V3& a) { return {Abs(a.x), Abs(a.y), Abs(a.z)}; }
 HWY_INLINE F Dot(const V3& a, const V3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 HWY_INLINE V3 Cross(const V3& a, const V3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -150,8 +173,9 @@ HWY_INLINE Rotation RotationOf(const Quaternion& q) {
 HWY_INLINE Quaternion Turned(const Quaternion& q, const V3& a) {
   const V3 half = a * F(0.5f);
   const F angle = Sqrt(Dot(half, half) + F(1e-30f));
-  const F c = hn::Cos(FloatTag(), angle.v);
-  const V3 s = half * (F(hn::Sin(FloatTag(), angle.v)) * Reciprocal(angle));
+  const SineCosine turn = SinCos(angle);
+  const F c = turn.cosine;
+  const V3 s = half * (turn.sine * Reciprocal(angle));
   Quaternion r = {
       c * q.w - s.x * q.x - s.y * q.y - s.z * q.z, c * q.x + s.x * q.w + s.y * q.z - s.z * q.y,
       c * q.y - s.x * q.z + s.y * q.w + s.z * q.x, c * q.z + s.x * q.y - s.y * q.x + s.z * q.w};

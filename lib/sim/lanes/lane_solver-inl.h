@@ -182,22 +182,20 @@ HWY_INLINE void SolveContact(ContactRows& rows, F friction, Velocity<N>& velocit
 // Corrections of the servos' impulses so that torque and angle keep their limits. `spent` holds
 // the corrections so far, one per joint.
 template <int N>
-HWY_INLINE void LimitJoints(const LanesModel& model, int c, F h, F rate, HandState& s, F* spent) {
+HWY_INLINE void LimitJoints(const LanesModel& model, int c, F h, HandState& s, F* spent) {
   const int first = model.chains[c].first;
   const F* inverse = s.inverse[c];
   const F damping = h * s.damping;
   F* u = s.u + first;
   for (int i = 0; i < N; ++i) {
     const int j = first + i;
-    const LaneLink& link = model.links[j];
-    const F most = h * F(link.torque_limit);
+    const F most = h * F(model.links[j].torque_limit);
     // Without the correction: speed and servo impulse.
     const F speed = JointSpeed<N>(inverse, u, i) - s.give[j] * spent[j];
     const F servo = s.ask[j] - damping * speed;
     F correction = (Clamp(servo, -most, most) - servo) * s.relief[j];
     const F limited = speed + s.give[j] * correction;
-    const F within =
-        Clamp(limited, (F(link.lower) - s.q[j]) * rate, (F(link.upper) - s.q[j]) * rate);
+    const F within = Clamp(limited, s.slowest[j], s.fastest[j]);
     correction += (within - limited) * s.stiff[j];
     const F change = correction - spent[j];
     spent[j] = correction;

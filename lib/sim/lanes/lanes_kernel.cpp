@@ -91,7 +91,7 @@ HWY_NOINLINE void Start(const LanesModel& model, float* block, F h, Substep& s) 
 HWY_NOINLINE void FindAll(const LanesModel& model, float* block, Substep& s) {
   const BlockLayout& at = model.layout;
   const Field field = LoadField(at, block);
-  FindAllContacts(model, s.hand, s.object, field, Load(Row(block, at.reach)), F(model.substep),
+  FindAllContacts(model, s.hand, s.object, field, F(model.substep),
                   Row(block, at.inset), s.found);
   s.self_count = FindSelfContacts(model, s.hand, s.self_found);
 }
@@ -102,7 +102,7 @@ HWY_NOINLINE void SetUp(const LanesModel& model, float* block, Substep& s) {
     const bool palm = g == at.chains;
     const int first = palm ? 0 : model.chains[g].first, size = palm ? 0 : model.chains[g].size;
     s.used[g] = 0;
-    while (s.used[g] < kSlots && Any(s.found[g].count > F(static_cast<float>(s.used[g]))))
+    while (s.used[g] < s.found[g].slots && Any(s.found[g].count > F(static_cast<float>(s.used[g]))))
       ++s.used[g];
     for (int k = 0; k < s.used[g]; ++k) {
       WithSize(size, [&](auto n) HWY_ATTR {
@@ -135,7 +135,7 @@ HWY_INLINE void ForEachContact(const LanesModel& model, Substep& s, Each&& each)
 HWY_INLINE void Drive(const LanesModel& model, F h, F rate, Substep& s) {
   for (int c = 0; c < static_cast<int>(model.chains.size()); ++c)
     WithSize(model.chains[c].size,
-             [&](auto n) HWY_ATTR { DriveChain<decltype(n)::value>(model, c, h, s.hand); });
+             [&](auto n) HWY_ATTR { DriveChain<decltype(n)::value>(model, c, h, rate, s.hand); });
   s.object.vs = s.object.vs + s.object.pull;
   ForEachContact(model, s, [&](ContactRows& rows, auto& velocity) HWY_ATTR {
     rows.ask = SeparationSpeed(rows.gap, rate);
@@ -147,10 +147,10 @@ HWY_INLINE void Drive(const LanesModel& model, F h, F rate, Substep& s) {
   }
 }
 
-HWY_INLINE void Sweep(const LanesModel& model, F friction, F h, F rate, F* spent, Substep& s) {
+HWY_INLINE void Sweep(const LanesModel& model, F friction, F h, F* spent, Substep& s) {
   for (int c = 0; c < static_cast<int>(model.chains.size()); ++c)
     WithSize(model.chains[c].size, [&](auto n) HWY_ATTR {
-      LimitJoints<decltype(n)::value>(model, c, h, rate, s.hand, spent);
+      LimitJoints<decltype(n)::value>(model, c, h, s.hand, spent);
     });
   for (int k = 0; k < s.self_count; ++k) SolveSelf(s.self[k], s.hand.u);
   ForEachContact(model, s, [&](ContactRows& rows, auto& velocity) HWY_ATTR {
@@ -164,7 +164,7 @@ HWY_NOINLINE void Advance(const LanesModel& model, float* block, F friction, F h
   F spent[kMaxJoints];
   for (int j = 0; j < model.layout.joints; ++j) spent[j] = F(0.0f);
   Drive(model, h, rate, s);
-  for (int k = 0; k < model.iterations; ++k) Sweep(model, friction, h, rate, spent, s);
+  for (int k = 0; k < model.iterations; ++k) Sweep(model, friction, h, spent, s);
   for (int c = 0; c < model.layout.chains; ++c)
     WithSize(model.chains[c].size,
              [&](auto n) HWY_ATTR { FinishChain<decltype(n)::value>(model, c, h, s.hand); });
@@ -208,7 +208,7 @@ HWY_NOINLINE void Finish(const LanesModel& model, float* block, F rate, Substep&
         touch = Max(touch, OrZero(pressed, s.found[g].tip[k]));
         depth = Max(depth, OrZero(here, -s.found[g].gap[k]));
       }
-      Store(s.found[g].key[k], row);
+      Store(k < s.found[g].slots ? s.found[g].key[k] : F(-1.0f), row);
       Store(normal, row + kBlockLanes);
       StoreV3(friction, row + 2 * kBlockLanes);
     }

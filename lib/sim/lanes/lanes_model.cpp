@@ -114,6 +114,24 @@ void AddPairs(const HandModel& hand, LanesModel& model) {
                    });
 }
 
+// A ball around the tip's cores, about the mean of their centres.
+void SetTipBall(const std::vector<LaneCore>& cores, int c, LaneChain& chain) {
+  const auto vector = [](const float* v) { return Vector3d(v[0], v[1], v[2]); };
+  Vector3d center = Vector3d::Zero();
+  int count = 0;
+  for (const LaneCore& core : cores)
+    if (core.tip && core.chain == c) center += vector(core.center), ++count;
+  if (count == 0) return;
+  center /= count;
+  double radius = 0;
+  for (const LaneCore& core : cores)
+    if (core.tip && core.chain == c)
+      radius = std::max(radius, (vector(core.center) - center).norm() + vector(core.half).norm() +
+                                    core.radius);
+  Put(center, chain.tip_center);
+  chain.tip_radius = static_cast<float>(radius);
+}
+
 void AddCores(const HandModel& hand, const std::vector<Matrix3d>& R_LZ, LanesModel& model) {
   for (const RoundedCore& core : CoresOf(hand))
     model.cores.push_back(MakeCore(hand, core, R_LZ[core.link]));
@@ -122,6 +140,8 @@ void AddCores(const HandModel& hand, const std::vector<Matrix3d>& R_LZ, LanesMod
   };
   std::stable_sort(model.cores.begin(), model.cores.end(),
                    [&](const LaneCore& a, const LaneCore& b) { return group(a) < group(b); });
+  for (std::size_t c = 0; c < model.chains.size(); ++c)
+    SetTipBall(model.cores, static_cast<int>(c), model.chains[c]);
   AddPairs(hand, model);
 }
 
@@ -143,7 +163,10 @@ LaneObject MakeObject(const SimObject& object) {
   if (!(out.unit_inertia.minCoeff() > 0))
     Fail("object {}: inertia: expected a positive definite matrix", object.name);
   for (const TriMesh& part : object.parts)
-    for (const Vector3d& vertex : part.vertices) out.radius = std::max(out.radius, vertex.norm());
+    for (const Vector3d& vertex : part.vertices) {
+      out.radius = std::max(out.radius, vertex.norm());
+      out.box.Extend(out.q_OB.conjugate() * vertex);
+    }
   return out;
 }
 

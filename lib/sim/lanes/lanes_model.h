@@ -28,6 +28,8 @@ struct LaneLink {
 // chain.
 struct LaneChain {
   int first = 0, size = 0;
+  float tip_center[3] = {0, 0, 0};  // of a ball around the tip's cores, in the last link's L; m
+  float tip_radius = 0;             // m
 };
 
 // A rounded core (see hand_cores.h). `extents` directions are not zero.
@@ -53,6 +55,7 @@ struct LaneObject {
   Eigen::Quaterniond q_OB = Eigen::Quaterniond::Identity();  // B: principal axes
   Eigen::Vector3d unit_inertia;                              // principal moments / mass; m^2
   double radius = 0;                                         // bounding sphere about O; m
+  Box3 box;                                            // of the parts, in B; m
   std::int32_t first_cell = 0;                               // of its field in LanesModel::cells
   Eigen::Vector3d origin, spacing;                           // of its field, in B at scale 1; m
   double quantum = 0;                                        // m per count

@@ -184,6 +184,8 @@ class LanesSim : public BatchSim {
     At(slot, at.kd) = static_cast<float>(model_.kd * physics.kd_factor);
     PutVector(slot, at.com, com_B);
     At(slot, at.reach) = static_cast<float>(object.radius * physics.scale);
+    PutVector(slot, at.box, physics.scale * object.box.Center());
+    PutVector(slot, at.box + 3, 0.5 * physics.scale * object.box.Size());
     At(slot, at.field) = std::bit_cast<float>(object.first_cell);
     PutVector(slot, at.field_scale, (physics.scale * object.spacing).cwiseInverse());
     PutVector(slot, at.field_shift, -object.origin.cwiseQuotient(object.spacing));
