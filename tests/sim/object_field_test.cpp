@@ -85,7 +85,7 @@ Box3 BoundsOf(const ConvexParts& parts) {
 }
 
 double CountsAt(const ObjectField& field, int x, int y, int z) {
-  return static_cast<std::int16_t>(field.words[FieldWord(x, y, z)] & 0xffff);
+  return field.nodes[FieldIndex(x, y, z)];
 }
 
 // Values at all nodes; m.
@@ -266,7 +266,7 @@ TEST(ObjectField, HasUnitGradientsThatPointAwayFromAConvexObject) {
 TEST(ObjectField, MovesWithTheObjectAndDoesNotDependOnTheOrderOfParts) {
   ConvexParts parts = Airplane().Parts();
   const ObjectField field = BuildObjectField(parts, kMargin);
-  EXPECT_EQ(BuildObjectField(parts, kMargin).words, field.words);  // deterministic
+  EXPECT_EQ(BuildObjectField(parts, kMargin).nodes, field.nodes);  // deterministic
   std::reverse(parts.begin(), parts.end());
   const ObjectField reversed = BuildObjectField(parts, kMargin);
   EXPECT_LE(LargestDifference(NodeValues(reversed), NodeValues(field)), 1.01 * field.quantum);
@@ -278,20 +278,10 @@ TEST(ObjectField, MovesWithTheObjectAndDoesNotDependOnTheOrderOfParts) {
   EXPECT_LE(LargestDifference(NodeValues(moved), NodeValues(field)), 1.01 * field.quantum);
 }
 
-TEST(ObjectField, HasTheLayoutThatKernelsGatherFrom) {
-  std::vector<int> seen(kFieldWords, 0);
-  for (int x = 0; x < kFieldNodes; ++x)
-    for (int y = 0; y < kFieldNodes; ++y)
-      for (int z = 0; z < kFieldNodes; ++z) ++seen[FieldWord(x, y, z)];
-  EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), kFieldWords);
+TEST(ObjectField, IsFinelyQuantised) {
   const ObjectField field = BuildObjectField(Ell().Parts(), kMargin);
-  ASSERT_EQ(field.words.size(), static_cast<std::size_t>(kFieldWords));
+  ASSERT_EQ(field.nodes.size(), static_cast<std::size_t>(kFieldSize));
   EXPECT_LE(field.quantum, 2.5e-6);
-  for (int x = 0; x < kFieldNodes; ++x)
-    for (int y = 0; y < kFieldNodes; ++y)
-      for (int z = 0; z < kFieldNodes; ++z)
-        ASSERT_EQ(field.words[FieldWord(x, y, z)] >> 16,
-                  CountsAt(field, std::min(x + 1, kFieldNodes - 1), y, z));
 }
 
 TEST(ObjectField, RejectsPartsThatAreNotConvexBodies) {

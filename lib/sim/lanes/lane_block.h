@@ -44,7 +44,7 @@ inline constexpr int kContactRows = 5;  // key, normal impulse, friction impulse
 // | com          | 3             | m: the centre of mass in B |
 // | reach        | 1             | m: bounding sphere about the origin of B |
 // | box          | 6             | m: centre and half extents of the object's box in B |
-// | field        | 1             | first word of the object's field (int32) |
+// | field        | 1             | first node of the object's field (int32) |
 // | field_scale  | 3             | nodes/m along the axes of B |
 // | field_shift  | 3             | nodes: where the origin of B lies |
 // | field_unit   | 1             | m per count     |

@@ -32,19 +32,20 @@ constexpr int kStarts = 4;  // of a core, at most
 
 // The object's distance field, and what bounds the object, per lane.
 struct Field {
-  F reach;                // bounding sphere about the origin of B; m
+  F reach;                  // bounding sphere about the origin of B; m
   V3 box_center, box_half;  // in B; m
-  I first;     // word
-  V3 scale;    // nodes per m
-  V3 shift;    // nodes
-  F unit;      // m per count
-  V3 spacing;  // m
+  I first;                  // byte of its first node
+  V3 scale;                 // nodes per m
+  V3 shift;                 // nodes
+  F unit;                   // m per count
+  V3 spacing;               // m
 };
 
 HWY_INLINE Field LoadField(const BlockLayout& at, const float* block) {
   const auto row = [block](int r) HWY_ATTR { return block + r * kBlockLanes; };
   Field field;
-  field.first = hn::Load(IntTag(), reinterpret_cast<const std::int32_t*>(row(at.field)));
+  field.first =
+      hn::ShiftLeft<1>(hn::Load(IntTag(), reinterpret_cast<const std::int32_t*>(row(at.field))));
   field.scale = LoadV3(row(at.field_scale));
   field.shift = LoadV3(row(at.field_shift));
   field.unit = Load(row(at.field_unit));
@@ -64,54 +65,42 @@ struct Pair {
   F low, high;
 };
 
-// The two values of a word: of a node and its neighbour along x, in counts.
-HWY_INLINE Pair Unpack(I word) {
-  return {hn::ConvertTo(FloatTag(), hn::ShiftRight<16>(hn::ShiftLeft<16>(word))),
-          hn::ConvertTo(FloatTag(), hn::ShiftRight<16>(word))};
-}
-
-struct Cells {
-  I near, far;  // words at y and y + 1
-};
-
-// The 64-bit words `index` of the lanes, each split into its halves.
-HWY_INLINE Cells Gather(const std::int64_t* cells, I index) {
-  const hn::Half<IntTag> half;
-  const auto low =
-      hn::GatherIndex(LongTag(), cells, hn::PromoteTo(LongTag(), hn::LowerHalf(half, index)));
-  const auto high =
-      hn::GatherIndex(LongTag(), cells, hn::PromoteTo(LongTag(), hn::UpperHalf(half, index)));
-  const I l = hn::BitCast(IntTag(), low), h = hn::BitCast(IntTag(), high);
-  return {hn::ConcatEven(IntTag(), h, l), hn::ConcatOdd(IntTag(), h, l)};
+// The nodes at a byte offset and their neighbours along z, in counts.
+HWY_INLINE Pair GatherPair(const std::int16_t* nodes, I offset) {
+  const I pair = hn::GatherOffset(IntTag(), reinterpret_cast<const std::int32_t*>(nodes), offset);
+  return {hn::ConvertTo(FloatTag(), hn::ShiftRight<16>(hn::ShiftLeft<16>(pair))),
+          hn::ConvertTo(FloatTag(), hn::ShiftRight<16>(pair))};
 }
 
 // Trilinear value and its gradient at p (in B; m). Beyond the grid the value on its border; with
 // kFar the way to the border is added.
 template <bool kFar>
-HWY_INLINE Sample SampleField(const Field& field, const std::int64_t* cells, const V3& p) {
+HWY_INLINE Sample SampleField(const Field& field, const std::int16_t* nodes, const V3& p) {
   const V3 g = Times(p, field.scale) + field.shift;
   const F top(kFieldNodes - 1.001f), zero(0.0f);
   const V3 c = {Clamp(g.x, zero, top), Clamp(g.y, zero, top), Clamp(g.z, zero, top)};
   const I x = hn::ConvertTo(IntTag(), c.x.v), y = hn::ConvertTo(IntTag(), c.y.v),
-          z = hn::ConvertTo(IntTag(), c.z.v), one = hn::Set(IntTag(), 1);
+          z = hn::ConvertTo(IntTag(), c.z.v);
   const V3 t = {c.x - F(hn::ConvertTo(FloatTag(), x)), c.y - F(hn::ConvertTo(FloatTag(), y)),
                 c.z - F(hn::ConvertTo(FloatTag(), z))};
-  static_assert(kFieldNodes == 32);
-  const I index =
-      hn::Add(hn::Add(field.first, z), hn::Add(hn::ShiftLeft<10>(x), hn::ShiftLeft<5>(y)));
-  const Cells below = Gather(cells, index), above = Gather(cells, hn::Add(index, one));
-  const Pair a = Unpack(below.near), b = Unpack(below.far), d = Unpack(above.near),
-             e = Unpack(above.far);
-  const F ax = a.high - a.low, bx = b.high - b.low, dx = d.high - d.low, ex = e.high - e.low;
-  const F va = a.low + t.x * ax, vb = b.low + t.x * bx, vd = d.low + t.x * dx,
-          ve = e.low + t.x * ex;
-  const F x0 = ax + t.y * (bx - ax), x1 = dx + t.y * (ex - dx);
+  constexpr int kBytes = sizeof(std::int16_t);
+  static_assert(FieldIndex(1, 0, 0) * kBytes == 1 << 11 && FieldIndex(0, 1, 0) * kBytes == 1 << 6);
+  const I offset = hn::Add(hn::Add(field.first, hn::ShiftLeft<1>(z)),
+                           hn::Add(hn::ShiftLeft<11>(x), hn::ShiftLeft<6>(y)));
+  const Pair a = GatherPair(nodes, offset), b = GatherPair(nodes + FieldIndex(0, 1, 0), offset),
+             d = GatherPair(nodes + FieldIndex(1, 0, 0), offset),
+             e = GatherPair(nodes + FieldIndex(1, 1, 0), offset);
+  // Along z, then y, then x.
+  const F az = a.high - a.low, bz = b.high - b.low, dz = d.high - d.low, ez = e.high - e.low;
+  const F va = a.low + t.z * az, vb = b.low + t.z * bz, vd = d.low + t.z * dz,
+          ve = e.low + t.z * ez;
+  const F z0 = az + t.y * (bz - az), z1 = dz + t.y * (ez - dz);
   const F ab = vb - va, de = ve - vd;
   const F v0 = va + t.y * ab, v1 = vd + t.y * de;
-  const V3 slope = {(x0 + t.z * (x1 - x0)) * field.scale.x, (ab + t.z * (de - ab)) * field.scale.y,
-                    (v1 - v0) * field.scale.z};
+  const V3 slope = {(v1 - v0) * field.scale.x, (ab + t.x * (de - ab)) * field.scale.y,
+                    (z0 + t.x * (z1 - z0)) * field.scale.z};
   Sample sample;
-  sample.distance = (v0 + t.z * (v1 - v0)) * field.unit;
+  sample.distance = (v0 + t.x * (v1 - v0)) * field.unit;
   if constexpr (kFar) {
     const V3 out = Times(g - c, field.spacing);
     const F out2 = Dot(out, out);
@@ -226,7 +215,7 @@ HWY_NOINLINE void FindContacts(const LanesModel& model, const LaneCore& core, in
                                const HandState& hand, const ObjectState& object, const Field& field,
                                F dt, float* inset, Contacts& contacts) {
   const PlacedCore placed = Place<kExtents>(core, joint, hand, object);
-  const std::int64_t* cells = model.cells.data();
+  const std::int16_t* nodes = model.nodes.data();
   const F radius(core.radius);
   F half[kExtents + 1], middle[kExtents + 1];
   for (int e = 0; e < kExtents; ++e) {
@@ -255,7 +244,7 @@ HWY_NOINLINE void FindContacts(const LanesModel& model, const LaneCore& core, in
   for (int round = 0; round < (kExtents == 0 ? 0 : kExtents == 1 ? 1 : kRounds); ++round) {
     Sample at[kCount];
     for (int start = 0; start < kCount; ++start)
-      at[start] = SampleField<true>(field, cells,
+      at[start] = SampleField<true>(field, nodes,
                                     PointAt<kExtents>(placed.center_B, placed.axis_B, s[start]));
     for (int start = 0; start < kCount; ++start)
       for (int e = 0; e < kExtents; ++e)
@@ -270,7 +259,7 @@ HWY_NOINLINE void FindContacts(const LanesModel& model, const LaneCore& core, in
   Sample last[kCount];
   for (int start = 0; start < kCount; ++start) {
     found[start] = PointAt<kExtents>(placed.center_B, placed.axis_B, s[start]);
-    last[start] = SampleField<false>(field, cells, found[start]);
+    last[start] = SampleField<false>(field, nodes, found[start]);
   }
   for (int start = 0; start < kCount; ++start) {
     const Sample& at = last[start];
@@ -292,8 +281,8 @@ HWY_NOINLINE void FindContacts(const LanesModel& model, const LaneCore& core, in
 }
 
 HWY_INLINE void FindAllContacts(const LanesModel& model, const HandState& hand,
-                                const ObjectState& object, const Field& field, F dt,
-                                float* insets, Contacts* contacts) {
+                                const ObjectState& object, const Field& field, F dt, float* insets,
+                                Contacts* contacts) {
   const int chains = static_cast<int>(model.chains.size());
   for (int c = 0; c < chains; ++c) contacts[c].Clear(kFingerSlots);
   contacts[chains].Clear(kSlots);

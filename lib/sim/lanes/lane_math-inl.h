@@ -22,7 +22,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using FloatTag = hn::CappedTag<float, kBlockLanes>;
 using IntTag = hn::Rebind<std::int32_t, FloatTag>;
-using LongTag = hn::Repartition<std::int64_t, IntTag>;  // half as many lanes
 using M = hn::Mask<FloatTag>;
 using I = hn::Vec<IntTag>;
 
@@ -89,16 +88,15 @@ struct SineCosine {
 HWY_INLINE SineCosine SinCos(F x) {
   const F k = hn::Round(hn::Mul(x.v, F(0.318309886f).v));
   const F r = x - k * F(3.14159274f) + k * F(8.7422777e-8f), r2 = r * r;
-  const F sine = r * (F(0.9999999958f) +
-                      r2 * (F(-0.16666658f) +
-                            r2 * (F(0.008333051245f) +
-                                  r2 * (F(-0.0001980908515f) + r2 * F(2.605242734e-6f)))));
+  const F sine =
+      r * (F(0.9999999958f) +
+           r2 * (F(-0.16666658f) + r2 * (F(0.008333051245f) +
+                                         r2 * (F(-0.0001980908515f) + r2 * F(2.605242734e-6f)))));
   const F cosine =
       F(0.9999999998f) +
       r2 * (F(-0.4999999936f) +
-            r2 * (F(0.04166663628f) +
-                  r2 * (F(-0.001388836161f) +
-                        r2 * (F(2.476016988e-5f) + r2 * F(-2.605162125e-7f)))));
+            r2 * (F(0.04166663628f) + r2 * (F(-0.001388836161f) +
+                                            r2 * (F(2.476016988e-5f) + r2 * F(-2.605162125e-7f)))));
   const F half = k * F(0.5f), odd = half - F(hn::Floor(half.v));  // 0 or 1/2
   const F sign = F(1.0f) - F(4.0f) * odd;
   return {sine * sign, cosine * sign};

@@ -91,8 +91,7 @@ HWY_NOINLINE void Start(const LanesModel& model, float* block, F h, Substep& s) 
 HWY_NOINLINE void FindAll(const LanesModel& model, float* block, Substep& s) {
   const BlockLayout& at = model.layout;
   const Field field = LoadField(at, block);
-  FindAllContacts(model, s.hand, s.object, field, F(model.substep),
-                  Row(block, at.inset), s.found);
+  FindAllContacts(model, s.hand, s.object, field, F(model.substep), Row(block, at.inset), s.found);
   s.self_count = FindSelfContacts(model, s.hand, s.self_found);
 }
 
@@ -149,9 +148,8 @@ HWY_INLINE void Drive(const LanesModel& model, F h, F rate, Substep& s) {
 
 HWY_INLINE void Sweep(const LanesModel& model, F friction, F h, F* spent, Substep& s) {
   for (int c = 0; c < static_cast<int>(model.chains.size()); ++c)
-    WithSize(model.chains[c].size, [&](auto n) HWY_ATTR {
-      LimitJoints<decltype(n)::value>(model, c, h, s.hand, spent);
-    });
+    WithSize(model.chains[c].size,
+             [&](auto n) HWY_ATTR { LimitJoints<decltype(n)::value>(model, c, h, s.hand, spent); });
   for (int k = 0; k < s.self_count; ++k) SolveSelf(s.self[k], s.hand.u);
   ForEachContact(model, s, [&](ContactRows& rows, auto& velocity) HWY_ATTR {
     SolveContact(rows, friction, velocity);

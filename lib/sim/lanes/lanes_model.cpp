@@ -126,8 +126,8 @@ void SetTipBall(const std::vector<LaneCore>& cores, int c, LaneChain& chain) {
   double radius = 0;
   for (const LaneCore& core : cores)
     if (core.tip && core.chain == c)
-      radius = std::max(radius, (vector(core.center) - center).norm() + vector(core.half).norm() +
-                                    core.radius);
+      radius = std::max(
+          radius, (vector(core.center) - center).norm() + vector(core.half).norm() + core.radius);
   Put(center, chain.tip_center);
   chain.tip_radius = static_cast<float>(radius);
 }
@@ -177,37 +177,23 @@ ObjectField MakeField(const SimObject& object, const Matrix3d& R_OB, double marg
   return BuildObjectField(parts, margin);
 }
 
-// Word (x, y, z), z fastest, holds the four nodes (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1) at
-// z, lowest bits first: two words with their neighbours along z make a cell.
-void PackCells(const ObjectField& field, std::int64_t* cells) {
-  constexpr int n = kFieldNodes;
-  for (int x = 0; x < n; ++x)
-    for (int y = 0; y < n; ++y)
-      for (int z = 0; z < n; ++z) {
-        const auto low = static_cast<std::uint32_t>(field.words[FieldWord(x, y, z)]);
-        const auto high =
-            static_cast<std::uint32_t>(field.words[FieldWord(x, std::min(y + 1, n - 1), z)]);
-        *cells++ = static_cast<std::int64_t>(static_cast<std::uint64_t>(high) << 32 | low);
-      }
-}
-
 void AddObjects(const std::vector<SimObject>& objects, ThreadPool& pool, LanesModel& model) {
   double margin = 0;
   for (const LaneCore& core : model.cores) margin = std::max<double>(margin, core.radius);
   margin += kFieldMargin;
-  const std::size_t cells = objects.size() * static_cast<std::size_t>(kFieldWords);
-  if (cells > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-    Fail("lanes engine: {} objects: their distance fields have too many cells", objects.size());
-  model.cells.resize(cells);
+  const std::size_t nodes = objects.size() * static_cast<std::size_t>(kFieldSize);
+  if (nodes > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max() / 2))
+    Fail("lanes engine: {} objects: their distance fields have too many nodes", objects.size());
+  model.nodes = BigArray<std::int16_t>(nodes + 2);  // pairs are read
   model.objects.resize(objects.size());
   pool.ParallelFor(static_cast<int>(objects.size()), [&](int i, int) {
     LaneObject& object = model.objects[i] = MakeObject(objects[i]);
     const ObjectField field = MakeField(objects[i], object.q_OB.toRotationMatrix(), margin);
-    object.first_cell = i * kFieldWords;
+    object.first_node = i * kFieldSize;
     object.origin = field.origin.cast<double>();
     object.spacing = field.spacing.cast<double>();
     object.quantum = field.quantum;
-    PackCells(field, &model.cells[object.first_cell]);
+    std::copy(field.nodes.begin(), field.nodes.end(), &model.nodes[object.first_node]);
   });
 }
 

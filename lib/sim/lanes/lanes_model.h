@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/batch_sim.h"
+#include "sim/lanes/big_array.h"
 #include "sim/lanes/lane_block.h"
 
 namespace dexremoe {
@@ -55,8 +56,8 @@ struct LaneObject {
   Eigen::Quaterniond q_OB = Eigen::Quaterniond::Identity();  // B: principal axes
   Eigen::Vector3d unit_inertia;                              // principal moments / mass; m^2
   double radius = 0;                                         // bounding sphere about O; m
-  Box3 box;                                            // of the parts, in B; m
-  std::int32_t first_cell = 0;                               // of its field in LanesModel::cells
+  Box3 box;                                                  // of the parts, in B; m
+  std::int32_t first_node = 0;                               // of its field in LanesModel::cells
   Eigen::Vector3d origin, spacing;                           // of its field, in B at scale 1; m
   double quantum = 0;                                        // m per count
 };
@@ -69,10 +70,10 @@ struct LanesModel {
   std::vector<LaneCore> cores;      // by chain, the base's last
   std::vector<LaneCorePair> pairs;  // by the chains of a and b
   std::vector<LaneObject> objects;
-  std::vector<std::int64_t> cells;  // fields of all objects
-  double kp = 0, kd = 0;            // N m/rad, N m s/rad
-  float armature = 0;               // kg m^2
-  float substep = 0;                // s: contacts are found once in it
+  BigArray<std::int16_t> nodes;  // fields of all objects
+  double kp = 0, kd = 0;         // N m/rad, N m s/rad
+  float armature = 0;            // kg m^2
+  float substep = 0;             // s: contacts are found once in it
   int substeps = 0, inner_steps = 0, iterations = 0;
 };
 

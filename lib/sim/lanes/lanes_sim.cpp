@@ -11,7 +11,9 @@
 #include "base/bytes.h"
 #include "base/check.h"
 #include "base/error.h"
+#include "sim/lanes/big_array.h"
 #include "sim/lanes/lanes_kernel.h"
+#include "sim/lanes/object_field.h"
 #include "sim/sim_rows.h"
 
 namespace dexremoe {
@@ -19,17 +21,6 @@ namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-struct AlignedDelete {
-  void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); }
-};
-using AlignedFloats = std::unique_ptr<float[], AlignedDelete>;
-
-AlignedFloats MakeFloats(std::size_t count) {
-  AlignedFloats floats(new (std::align_val_t(64)) float[count]);
-  std::fill_n(floats.get(), count, 0.0f);
-  return floats;
-}
 
 LanesKernel ChooseKernel(const std::string& instructions) {
   const std::vector<LanesKernel> kernels = LanesKernels();
@@ -49,7 +40,7 @@ class LanesSim : public BatchSim {
         pool_(pool),
         num_envs_(num_envs),
         blocks_((num_envs + kBlockLanes - 1) / kBlockLanes),
-        rows_(MakeFloats(static_cast<std::size_t>(blocks_) * model_.layout.rows * kBlockLanes)),
+        rows_(static_cast<std::size_t>(blocks_) * model_.layout.rows * kBlockLanes),
         slot_(num_envs),
         object_(blocks_ * kBlockLanes, 0),
         steps_(num_envs, 0),
@@ -126,7 +117,8 @@ class LanesSim : public BatchSim {
   }
 
   LanesFootprint Footprint() const {
-    return {model_.layout.rows * sizeof(float), kFieldBytes, kBlockLanes, kernel_.name};
+    return {model_.layout.rows * sizeof(float), kFieldSize * sizeof(std::int16_t), kBlockLanes,
+            kernel_.name};
   }
   void StartProfile() {
     profiling_ = true;
@@ -150,7 +142,7 @@ class LanesSim : public BatchSim {
   }
 
   float* Block(int block) {
-    return rows_.get() + static_cast<std::size_t>(block) * model_.layout.rows * kBlockLanes;
+    return rows_.data() + static_cast<std::size_t>(block) * model_.layout.rows * kBlockLanes;
   }
   std::size_t Index(int slot, int row) const {
     return (static_cast<std::size_t>(slot / kBlockLanes) * model_.layout.rows + row) * kBlockLanes +
@@ -186,7 +178,7 @@ class LanesSim : public BatchSim {
     At(slot, at.reach) = static_cast<float>(object.radius * physics.scale);
     PutVector(slot, at.box, physics.scale * object.box.Center());
     PutVector(slot, at.box + 3, 0.5 * physics.scale * object.box.Size());
-    At(slot, at.field) = std::bit_cast<float>(object.first_cell);
+    At(slot, at.field) = std::bit_cast<float>(object.first_node);
     PutVector(slot, at.field_scale, (physics.scale * object.spacing).cwiseInverse());
     PutVector(slot, at.field_shift, -object.origin.cwiseQuotient(object.spacing));
     At(slot, at.field_unit) = static_cast<float>(object.quantum * physics.scale);
@@ -234,10 +226,8 @@ class LanesSim : public BatchSim {
     std::iota(order.begin(), order.end(), 0);  // slots
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return object_[a] < object_[b]; });
-    const std::size_t size = static_cast<std::size_t>(blocks_) * model_.layout.rows * kBlockLanes;
-    AlignedFloats old = MakeFloats(size);
-    std::swap(old, rows_);
-    std::copy_n(old.get(), size, rows_.get());
+    BigArray<float> old(rows_.size());
+    std::copy_n(rows_.data(), rows_.size(), old.data());
     const std::vector<int> objects = object_;
     for (int slot = 0; slot < num_envs_; ++slot) {
       for (int row = 0; row < model_.layout.rows; ++row)
@@ -311,13 +301,11 @@ class LanesSim : public BatchSim {
     state_.max_penetration[row] = At(slot, at.depth);
   }
 
-  static constexpr std::size_t kFieldBytes = sizeof(std::int64_t) * 32 * 32 * 32;
-
   LanesModel model_;
   LanesKernel kernel_;
   ThreadPool& pool_;
   int num_envs_, blocks_;
-  AlignedFloats rows_;               // [blocks][layout.rows][kBlockLanes]
+  BigArray<float> rows_;             // [blocks][layout.rows][kBlockLanes]
   std::vector<int> slot_;            // [N] where each environment is: block and lane
   std::vector<int> env_of_slot_;     // [N] and back, once grouped
   std::vector<int> object_;          // [blocks * kBlockLanes], by slot

@@ -15,8 +15,6 @@ using Eigen::Vector3d;
 constexpr int kN = kFieldNodes;
 constexpr int kMaxCount = 32767;
 
-int NodeIndex(int x, int y, int z) { return (x * kN + y) * kN + z; }
-
 // The stored origin and spacing are floats; nodes are where these say.
 Vector3d NodePosition(const ObjectField& field, int x, int y, int z) {
   return field.origin.cast<double>() + field.spacing.cast<double>().cwiseProduct(Vector3d(x, y, z));
@@ -33,7 +31,7 @@ void PlaceGrid(const ConvexParts& parts, double margin, ObjectField& field) {
 
 // Marks the nodes inside any part, row by row along z: a convex body holds one interval of a row.
 std::vector<std::uint8_t> InsideNodes(const ConvexParts& parts, const ObjectField& field) {
-  std::vector<std::uint8_t> inside(kFieldWords, 0);
+  std::vector<std::uint8_t> inside(kFieldSize, 0);
   const double step = field.spacing.z();
   for (const TriMesh& part : parts) {
     const ConvexBody body = BodyOf(part);
@@ -52,24 +50,24 @@ std::vector<std::uint8_t> InsideNodes(const ConvexParts& parts, const ObjectFiel
         }
         low = std::min(low, kN * step);  // nearly upright faces cross far away
         for (int z = static_cast<int>(std::ceil(low / step)); z < kN && z * step <= high; ++z)
-          inside[NodeIndex(x, y, z)] = 1;
+          inside[FieldIndex(x, y, z)] = 1;
       }
   }
   return inside;
 }
 
-// Signed distance at every node, by NodeIndex. Nodes are visited to and fro, so that each follows a
-// neighbour.
+// Signed distance at every node, by FieldIndex. Nodes are visited to and fro, so that each follows
+// a neighbour.
 std::vector<double> NodeDistances(const ConvexParts& parts, const ObjectField& field) {
   const std::vector<std::uint8_t> inside = InsideNodes(parts, field);
   UnionDistance distance(parts);
-  std::vector<double> distances(kFieldWords);
+  std::vector<double> distances(kFieldSize);
   for (int x = 0; x < kN; ++x)
     for (int j = 0; j < kN; ++j) {
       const int y = x & 1 ? kN - 1 - j : j;
       for (int k = 0; k < kN; ++k) {
         const int z = (x + j) & 1 ? kN - 1 - k : k;
-        const int node = NodeIndex(x, y, z);
+        const int node = FieldIndex(x, y, z);
         distances[node] = distance.Signed(NodePosition(field, x, y, z), inside[node]);
       }
     }
@@ -85,10 +83,10 @@ void TakeOffMeanError(std::vector<double>& distances) {
   for (int x = 1; x < kN - 1; ++x)
     for (int y = 1; y < kN - 1; ++y)
       for (int z = 1; z < kN - 1; ++z) {
-        const int node = NodeIndex(x, y, z);
+        const int node = FieldIndex(x, y, z);
         if (exact[node] <= 0) continue;
         double second = 0;  // k h^2, summed over the axes
-        for (const int next : {NodeIndex(1, 0, 0), NodeIndex(0, 1, 0), NodeIndex(0, 0, 1)})
+        for (const int next : {FieldIndex(1, 0, 0), FieldIndex(0, 1, 0), FieldIndex(0, 0, 1)})
           second += exact[node - next] - 2 * exact[node] + exact[node + next];
         distances[node] -= second / 12;
       }
@@ -98,18 +96,11 @@ void Quantise(const std::vector<double>& distances, ObjectField& field) {
   double largest = 0;
   for (const double d : distances) largest = std::max(largest, std::abs(d));
   field.quantum = static_cast<float>(largest / kMaxCount);
-  const auto count = [&](int x, int y, int z) {
-    const double counts = std::round(distances[NodeIndex(x, y, z)] / field.quantum);
-    return static_cast<std::int32_t>(std::clamp<double>(counts, -kMaxCount, kMaxCount));
-  };
-  field.words.resize(kFieldWords);
-  for (int x = 0; x < kN; ++x)
-    for (int y = 0; y < kN; ++y)
-      for (int z = 0; z < kN; ++z) {
-        const auto low = static_cast<std::uint32_t>(count(x, y, z)) & 0xffffu;
-        const auto high = static_cast<std::uint32_t>(count(std::min(x + 1, kN - 1), y, z)) << 16;
-        field.words[FieldWord(x, y, z)] = static_cast<std::int32_t>(high | low);
-      }
+  for (const double d : distances) {
+    const double counts = std::round(d / field.quantum);
+    field.nodes.push_back(
+        static_cast<std::int16_t>(std::clamp<double>(counts, -kMaxCount, kMaxCount)));
+  }
 }
 
 }  // namespace
@@ -138,13 +129,13 @@ FieldSample SampleField(const ObjectField& field, const Vector3d& p_O) {
   double value = 0;
   Vector3d slope = Vector3d::Zero();
   for (int corner = 0; corner < 4; ++corner) {
-    const int dy = corner & 1, dz = corner >> 1;
-    const std::int32_t word = field.words[FieldWord(cell[0], cell[1] + dy, cell[2] + dz)];
-    const double low = static_cast<std::int16_t>(word & 0xffff), high = word >> 16;
-    const double along_x = low + t.x() * (high - low);
-    const double wy = dy ? t.y() : 1 - t.y(), wz = dz ? t.z() : 1 - t.z();
-    value += wy * wz * along_x;
-    slope += Vector3d(wy * wz * (high - low), (dy ? wz : -wz) * along_x, (dz ? wy : -wy) * along_x);
+    const int dx = corner & 1, dy = corner >> 1;
+    const int node = FieldIndex(cell[0] + dx, cell[1] + dy, cell[2]);
+    const double low = field.nodes[node], high = field.nodes[node + 1];
+    const double along_z = low + t.z() * (high - low);
+    const double wx = dx ? t.x() : 1 - t.x(), wy = dy ? t.y() : 1 - t.y();
+    value += wx * wy * along_z;
+    slope += Vector3d((dx ? wy : -wy) * along_z, (dy ? wx : -wx) * along_z, wx * wy * (high - low));
   }
   FieldSample sample = {field.quantum * value, field.quantum * slope.cwiseQuotient(spacing)};
   const Vector3d beyond = p_O - nearest;
