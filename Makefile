@@ -8,7 +8,8 @@ SHELL := /bin/bash
 
 # What a user may set. The text behind ## is shown by `make help`.
 OBJECTS ?= builtin#                ## builtin, or a folder CATEGORY/MESH with or without manifest.csv
-ENGINE ?= ode#                     ## physics engine of training and evaluation
+ENGINE ?= lanes#                   ## physics engine of grasps and training: lanes, ode or mujoco
+CHECK ?= ode#                      ## physics engine of evaluation
 HAND ?= data/hand/gx11.urdf#       ## hand description
 WORKERS ?= 0#                      ## threads (0: one per processor); results do not depend on it
 SEED ?= 1#                         ## seed of everything random

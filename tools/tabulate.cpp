@@ -32,6 +32,7 @@ std::vector<dexremoe::MethodResults> Group(const std::vector<std::string>& files
 int main(int argc, char** argv) {
   std::vector<std::string> files, labels;
   std::string paper, paper_table = "1", out;
+  bool engines = false;
   dexremoe::BootstrapOptions bootstrap;
   dexremoe::Options options(
       "tabulate",
@@ -43,6 +44,7 @@ int main(int argc, char** argv) {
   options.Add("labels", &labels, "row labels; equal labels are seeds of one method").Required();
   options.Add("paper", &paper, "CSV with the paper's numbers; empty leaves them out");
   options.Add("paper_table", &paper_table, "which of the paper's tables");
+  options.Add("engines", &engines, "rows are physics engines, not methods");
   options.Add("resamples", &bootstrap.resamples, "bootstrap resamples").Range(0, 1e6);
   options.Add("seed", &bootstrap.seed, "seed of the bootstrap");
   options.Add("out", &out, "path without ending").Required().NotStored();
@@ -50,7 +52,7 @@ int main(int argc, char** argv) {
     const auto methods = Group(files, labels);
     std::vector<dexremoe::PaperNumber> numbers;
     if (!paper.empty()) numbers = dexremoe::ReadPaperNumbers(paper);
-    const auto tables = dexremoe::MakeTables(methods, numbers, paper_table, bootstrap);
+    const auto tables = dexremoe::MakeTables(methods, numbers, paper_table, bootstrap, engines);
     const std::string markdown = dexremoe::MarkdownOf(tables);
     dexremoe::WriteFile(out + ".csv", dexremoe::CsvOf(tables));
     dexremoe::WriteFile(out + ".tex", dexremoe::LatexOf(tables));

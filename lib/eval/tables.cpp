@@ -40,7 +40,7 @@ std::vector<EpisodeRecord> PooledEpisodes(const MethodResults& method, const std
 }
 
 // Tables compare methods only when all were evaluated alike.
-void CheckComparable(const std::vector<MethodResults>& methods) {
+void CheckComparable(const std::vector<MethodResults>& methods, bool rows_are_engines) {
   const EvalFile& first = methods.front().evals.front();
   for (const MethodResults& method : methods)
     for (const EvalFile& eval : method.evals) {
@@ -48,7 +48,8 @@ void CheckComparable(const std::vector<MethodResults>& methods) {
         if (ObjectNames(eval, split) != ObjectNames(first, split))
           Fail("{}: expected the same {} objects as {}, found others", method.label, split,
                methods.front().label);
-      if (eval.engine != first.engine || eval.substeps != first.substeps || eval.push != first.push)
+      const bool same = eval.engine == first.engine && eval.substeps == first.substeps;
+      if ((!same && !rows_are_engines) || eval.push != first.push)
         Fail(
             "{}: expected engine {} with {} substeps and {} N pushes as for {}, found {}, {}, {} N",
             method.label, first.engine, first.substeps, first.push, methods.front().label,
@@ -70,14 +71,21 @@ std::string Caption(const std::vector<MethodResults>& methods, const std::string
   }
   const std::string push =
       first.push > 0 ? fmt::format(", pushes of {} N", first.push) : std::string();
+  // Engine and substeps of every method, or once where they are the same.
+  std::vector<std::string> engines;
+  for (const MethodResults& method : methods) {
+    const EvalFile& eval = method.evals.front();
+    const std::string engine = fmt::format("{} with {} substeps", eval.engine, eval.substeps);
+    if (std::find(engines.begin(), engines.end(), engine) == engines.end())
+      engines.push_back(engine);
+  }
   return fmt::format(
       "Successes per episode on {} {}, tolerance {} rad; {} episodes a method, {} seed{}; engine "
-      "{} "
-      "with {} substeps{}; mean with 95 % interval (bootstrap over episodes). Falls: share of "
+      "{}{}; mean with 95 % interval (bootstrap over episodes). Falls: share of "
       "episodes; length: control steps of 600.",
       ObjectNames(first, split).size(), SplitName(split), tolerance, fmt::join(counts, " or "),
-      fmt::join(seeds, " or "), seeds == std::set<std::size_t>{1} ? "" : "s", first.engine,
-      first.substeps, push);
+      fmt::join(seeds, " or "), seeds == std::set<std::size_t>{1} ? "" : "s",
+      fmt::join(engines, ", "), push);
 }
 
 std::vector<TableRow> PaperRows(const std::vector<PaperNumber>& paper, const std::string& table,
@@ -121,8 +129,8 @@ std::vector<PaperNumber> ReadPaperNumbers(const std::string& path) {
 std::vector<ResultTable> MakeTables(const std::vector<MethodResults>& methods,
                                     const std::vector<PaperNumber>& paper,
                                     const std::string& paper_table,
-                                    const BootstrapOptions& bootstrap) {
-  CheckComparable(methods);
+                                    const BootstrapOptions& bootstrap, bool rows_are_engines) {
+  CheckComparable(methods, rows_are_engines);
   std::vector<double> tolerances;
   for (const EvalRun& run : methods.front().evals.front().runs) tolerances.push_back(run.tolerance);
   std::vector<ResultTable> tables;

@@ -40,11 +40,12 @@ struct ResultTable {
 
 // One table for each split and tolerance that the evaluations hold; the paper's rows (of its
 // `table`) stand below ours at tolerance 0.4 rad. Throws Error when the methods were evaluated on
-// different objects or with different engines.
+// different objects or, unless rows may be engines, with different engines or substeps.
 std::vector<ResultTable> MakeTables(const std::vector<MethodResults>& methods,
                                     const std::vector<PaperNumber>& paper,
                                     const std::string& paper_table,
-                                    const BootstrapOptions& bootstrap);
+                                    const BootstrapOptions& bootstrap,
+                                    bool rows_are_engines = false);
 
 std::string MarkdownOf(const std::vector<ResultTable>& tables);
 std::string LatexOf(const std::vector<ResultTable>& tables);

@@ -15,11 +15,12 @@ void SimOptions::Register(Options& options) {
   options.Add("sim.substeps", &substeps, "physics steps per control step").Range(1, 64);
   options.Add("sim.inner_steps", &inner_steps, "lanes: time steps per physics step").Range(1, 16);
   options.Add("sim.iterations", &iterations, "lanes: solver sweeps per time step").Range(1, 100);
-  options.Add("sim.instructions", &instructions, "lanes: instruction set").Choices(
-      {"auto", "avx512", "avx2", "sse4", "portable"});
+  options.Add("sim.instructions", &instructions, "lanes: instruction set")
+      .Choices({"auto", "avx512", "avx2", "sse4", "portable"});
   options.Add("sim.control_rate", &control_rate, "control steps per second, Hz").Range(1, 1000);
   options.Add("sim.gravity", &gravity, "gravity along the palm's normal, m/s^2").Range(-100, 100);
-  options.Add("sim.max_contacts", &max_contacts, "hand-object contact points kept").Range(1, 64);
+  options.Add("sim.max_contacts", &max_contacts, "ode: hand-object contact points kept")
+      .Range(1, 64);
 }
 
 EnvState BatchSim::GetState(int env) const {

@@ -19,15 +19,15 @@
 namespace dexremoe {
 
 struct SimOptions {
-  std::string engine = "ode";       // ode, lanes or mujoco
-  int substeps = 2;                 // physics steps per control step (evidence: README, "Physics")
-  int inner_steps = 2;              // lanes: time steps per physics step, contacts found once
-  int iterations = 3;               // lanes: solver sweeps per time step
+  std::string engine = "ode";  // ode, lanes or mujoco
+  int substeps = 2;            // physics steps per control step (evidence: README, "Physics")
+  int inner_steps = 2;         // lanes: time steps per physics step, contacts found once
+  int iterations = 3;          // lanes: solver sweeps per time step
   std::string instructions = "auto";  // lanes: auto, avx512, avx2, sse4 or portable
-  double control_rate = 60;         // Hz (paper)
-  double gravity = 9.81;            // m/s^2 along +z_P (palm down)
-  int max_contacts = 12;            // per environment
-  void Register(Options& options);  // section "sim"
+  double control_rate = 60;           // Hz (paper)
+  double gravity = 9.81;              // m/s^2 along +z_P (palm down)
+  int max_contacts = 12;              // ode: per environment
+  void Register(Options& options);    // section "sim"
 };
 
 // An object as the engines see it. Body frame O: origin at the centre of mass.

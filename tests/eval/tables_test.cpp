@@ -123,5 +123,13 @@ TEST(Tables, MethodsOfOtherObjectsOrEnginesAreRefused) {
               HasSubstr("substeps"));
 }
 
+TEST(Tables, RowsMayBeEngines) {
+  EvalFile other = SampleEval(5);
+  other.engine = "mujoco";
+  other.substeps = 16;
+  const auto tables = MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, "1", {1, 1}, true);
+  EXPECT_THAT(tables[0].caption, HasSubstr("mujoco with 16 substeps"));
+}
+
 }  // namespace
 }  // namespace dexremoe

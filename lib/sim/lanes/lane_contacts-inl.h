@@ -1,4 +1,4 @@
-// Where the hand meets the object, and fingers each other, in all lanes.
+// Where the hand meets the object, in all lanes.
 #if defined(DEXREMOE_LANE_CONTACTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef DEXREMOE_LANE_CONTACTS_INL_H
 #undef DEXREMOE_LANE_CONTACTS_INL_H
@@ -7,7 +7,7 @@
 #endif
 
 #include "sim/lanes/lane_dynamics-inl.h"
-#include "sim/lanes/object_field.h"
+#include "sim/lanes/lane_field-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace dexremoe {
@@ -29,86 +29,6 @@ constexpr float kDrawBack = 0.25f;
 // then ends on the face, where the normal is right, and not on the rim.
 constexpr float kOvershoot = 1.2f;
 constexpr int kStarts = 4;  // of a core, at most
-
-// The object's distance field, and what bounds the object, per lane.
-struct Field {
-  F reach;                  // bounding sphere about the origin of B; m
-  V3 box_center, box_half;  // in B; m
-  I first;                  // byte of its first node
-  V3 scale;                 // nodes per m
-  V3 shift;                 // nodes
-  F unit;                   // m per count
-  V3 spacing;               // m
-};
-
-HWY_INLINE Field LoadField(const BlockLayout& at, const float* block) {
-  const auto row = [block](int r) HWY_ATTR { return block + r * kBlockLanes; };
-  Field field;
-  field.first =
-      hn::ShiftLeft<1>(hn::Load(IntTag(), reinterpret_cast<const std::int32_t*>(row(at.field))));
-  field.scale = LoadV3(row(at.field_scale));
-  field.shift = LoadV3(row(at.field_shift));
-  field.unit = Load(row(at.field_unit));
-  field.reach = Load(row(at.reach));
-  field.box_center = LoadV3(row(at.box));
-  field.box_half = LoadV3(row(at.box + 3));
-  field.spacing = {Reciprocal(field.scale.x), Reciprocal(field.scale.y), Reciprocal(field.scale.z)};
-  return field;
-}
-
-struct Sample {
-  F distance;   // m
-  V3 gradient;  // unit, or zero where the field is flat
-};
-
-struct Pair {
-  F low, high;
-};
-
-// The nodes at a byte offset and their neighbours along z, in counts.
-HWY_INLINE Pair GatherPair(const std::int16_t* nodes, I offset) {
-  const I pair = hn::GatherOffset(IntTag(), reinterpret_cast<const std::int32_t*>(nodes), offset);
-  return {hn::ConvertTo(FloatTag(), hn::ShiftRight<16>(hn::ShiftLeft<16>(pair))),
-          hn::ConvertTo(FloatTag(), hn::ShiftRight<16>(pair))};
-}
-
-// Trilinear value and its gradient at p (in B; m). Beyond the grid the value on its border; with
-// kFar the way to the border is added.
-template <bool kFar>
-HWY_INLINE Sample SampleField(const Field& field, const std::int16_t* nodes, const V3& p) {
-  const V3 g = Times(p, field.scale) + field.shift;
-  const F top(kFieldNodes - 1.001f), zero(0.0f);
-  const V3 c = {Clamp(g.x, zero, top), Clamp(g.y, zero, top), Clamp(g.z, zero, top)};
-  const I x = hn::ConvertTo(IntTag(), c.x.v), y = hn::ConvertTo(IntTag(), c.y.v),
-          z = hn::ConvertTo(IntTag(), c.z.v);
-  const V3 t = {c.x - F(hn::ConvertTo(FloatTag(), x)), c.y - F(hn::ConvertTo(FloatTag(), y)),
-                c.z - F(hn::ConvertTo(FloatTag(), z))};
-  constexpr int kBytes = sizeof(std::int16_t);
-  static_assert(FieldIndex(1, 0, 0) * kBytes == 1 << 11 && FieldIndex(0, 1, 0) * kBytes == 1 << 6);
-  const I offset = hn::Add(hn::Add(field.first, hn::ShiftLeft<1>(z)),
-                           hn::Add(hn::ShiftLeft<11>(x), hn::ShiftLeft<6>(y)));
-  const Pair a = GatherPair(nodes, offset), b = GatherPair(nodes + FieldIndex(0, 1, 0), offset),
-             d = GatherPair(nodes + FieldIndex(1, 0, 0), offset),
-             e = GatherPair(nodes + FieldIndex(1, 1, 0), offset);
-  // Along z, then y, then x.
-  const F az = a.high - a.low, bz = b.high - b.low, dz = d.high - d.low, ez = e.high - e.low;
-  const F va = a.low + t.z * az, vb = b.low + t.z * bz, vd = d.low + t.z * dz,
-          ve = e.low + t.z * ez;
-  const F z0 = az + t.y * (bz - az), z1 = dz + t.y * (ez - dz);
-  const F ab = vb - va, de = ve - vd;
-  const F v0 = va + t.y * ab, v1 = vd + t.y * de;
-  const V3 slope = {(v1 - v0) * field.scale.x, (ab + t.x * (de - ab)) * field.scale.y,
-                    (z0 + t.x * (z1 - z0)) * field.scale.z};
-  Sample sample;
-  sample.distance = (v0 + t.x * (v1 - v0)) * field.unit;
-  if constexpr (kFar) {
-    const V3 out = Times(g - c, field.spacing);
-    const F out2 = Dot(out, out);
-    sample.distance += out2 * RoughInverseSqrt(out2 + F(1e-20f));
-  }
-  sample.gradient = slope * RoughInverseSqrt(Dot(slope, slope) + F(1e-3f));
-  return sample;
-}
 
 // Contact points between the object and one finger or the palm; slot k is filled in lanes with
 // more than k points.
@@ -305,135 +225,6 @@ HWY_INLINE void FindAllContacts(const LanesModel& model, const HandState& hand,
         FindContacts<3>(model, core, id, joint, hand, object, field, dt, inset, group);
     }
   }
-}
-
-// The deepest point between a fingertip and another finger, or the palm.
-struct SelfContact {
-  int chain_a = 0, chain_b = 0;  // b: -1 for the palm
-  V3 point, normal;              // from b to a, W
-  F gap, link_a, link_b;
-
-  HWY_INLINE void Deepen(const V3& p, const V3& n, F g, F of_a, F of_b) {
-    const M deeper = g < gap;
-    point = Select(deeper, p, point);
-    normal = Select(deeper, n, normal);
-    gap = Select(deeper, g, gap);
-    link_a = Select(deeper, of_a, link_a);
-    link_b = Select(deeper, of_b, link_b);
-  }
-};
-
-// A capsule's or sphere's core in W.
-struct Segment {
-  V3 center, axis;
-  F half;
-};
-
-HWY_INLINE Segment PlaceSegment(const LanesModel& model, const LaneCore& core,
-                                const HandState& hand) {
-  const int joint = model.chains[core.chain].first + core.link;
-  return {hand.origin[joint] + hand.R[joint] * Everywhere(core.center),
-          hand.R[joint] * Everywhere(core.axes), F(core.half[0])};
-}
-
-// Closest points of two segments (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
-HWY_INLINE void MeetSegments(const Segment& a, const Segment& b, float radii, SelfContact& contact,
-                             F link_a, F link_b) {
-  const V3 r = a.center - b.center;
-  const F slant = Dot(a.axis, b.axis), ra = Dot(a.axis, r), rb = Dot(b.axis, r);
-  const F across = Max(F(1.0f) - slant * slant, F(1e-4f));
-  F s = Clamp((slant * rb - ra) * Reciprocal(across), -a.half, a.half);
-  const F t = Clamp(slant * s + rb, -b.half, b.half);
-  s = Clamp(slant * t - ra, -a.half, a.half);
-  const V3 pa = a.center + a.axis * s, pb = b.center + b.axis * t, d = pa - pb;
-  const F inverse = InverseSqrt(Dot(d, d) + F(1e-12f));
-  const F gap = Dot(d, d) * inverse - F(radii);
-  contact.Deepen((pa + pb) * F(0.5f), d * inverse, gap, link_a, link_b);
-}
-
-// Both ends of a segment against a rounded box of the base.
-HWY_INLINE void MeetPalm(const Segment& a, float radius, const LaneCore& palm, SelfContact& contact,
-                         F link_a) {
-  for (const float end : {-1.0f, 1.0f}) {
-    const V3 p = a.center + a.axis * (a.half * F(end));
-    const V3 from = p - Everywhere(palm.center);
-    V3 d = from;  // from the box's nearest point to p
-    for (int e = 0; e < 3; ++e) {
-      const V3 axis = Everywhere(palm.axes + 3 * e);
-      d = d - axis * Clamp(Dot(from, axis), F(-palm.half[e]), F(palm.half[e]));
-    }
-    // Inside the core it leaves along the shortest extent.
-    const V3 shortest = Everywhere(palm.axes + 6);
-    const F height = Dot(from, shortest);
-    const M below = height < F(0.0f), inside = Dot(d, d) < F(1e-10f);
-    const F inverse = InverseSqrt(Dot(d, d) + F(1e-12f));
-    const V3 normal = Select(inside, Select(below, shortest * F(-1.0f), shortest), d * inverse);
-    const F distance = Select(inside, Abs(height) - F(palm.half[2]), Dot(d, d) * inverse);
-    const F gap = distance - F(radius + palm.radius);
-    contact.Deepen(p - normal * (F(radius) + F(0.5f) * gap), normal, gap, link_a, F(-1.0f));
-  }
-}
-
-HWY_INLINE bool SameChains(const LanesModel& model, const LaneCorePair& l, const LaneCorePair& r) {
-  return model.cores[l.a].chain == model.cores[r.a].chain &&
-         model.cores[l.b].chain == model.cores[r.b].chain;
-}
-
-// Whether in any lane the ball around a chain's tip meets another chain's, or reaches down to a
-// base core that lies across its third axis (chain_b -1).
-HWY_INLINE bool MayMeet(const LanesModel& model, const V3* tips, int chain_a, int chain_b,
-                        const LaneCore& core_b) {
-  const float radius = model.chains[chain_a].tip_radius + 2 * kForceReach;
-  if (chain_b < 0) {
-    const F height = Dot(tips[chain_a] - Everywhere(core_b.center), Everywhere(core_b.axes + 6));
-    return Any(Abs(height) < F(core_b.half[2] + core_b.radius + radius));
-  }
-  const V3 d = tips[chain_a] - tips[chain_b];
-  const float reach = radius + model.chains[chain_b].tip_radius;
-  return Any(Dot(d, d) < F(reach * reach));
-}
-
-HWY_INLINE void PlaceTips(const LanesModel& model, const HandState& hand, V3* tips) {
-  for (std::size_t c = 0; c < model.chains.size(); ++c) {
-    const LaneChain& chain = model.chains[c];
-    if (chain.size == 0) continue;
-    const int last = chain.first + chain.size - 1;
-    tips[c] = hand.origin[last] + hand.R[last] * Everywhere(chain.tip_center);
-  }
-}
-
-// Fills `contacts` with the deepest contact of each pair of chains that may touch within a time
-// step; returns how many.
-HWY_NOINLINE int FindSelfContacts(const LanesModel& model, const HandState& hand,
-                                  SelfContact* contacts) {
-  int count = 0;
-  V3 tips[kMaxChains];
-  PlaceTips(model, hand, tips);
-  for (std::size_t k = 0; k < model.pairs.size();) {
-    const int chain_a = model.cores[model.pairs[k].a].chain,
-              chain_b = model.cores[model.pairs[k].b].chain;
-    const std::size_t first = k;
-    while (k < model.pairs.size() && SameChains(model, model.pairs[first], model.pairs[k])) ++k;
-    if (!MayMeet(model, tips, chain_a, chain_b, model.cores[model.pairs[first].b])) continue;
-    SelfContact& contact = contacts[count];
-    contact.chain_a = chain_a;
-    contact.chain_b = chain_b;
-    contact.gap = F(1.0f);
-    contact.point = contact.normal = {F(0.0f), F(0.0f), F(0.0f)};
-    contact.link_a = contact.link_b = F(-1.0f);
-    for (std::size_t i = first; i < k; ++i) {
-      const LaneCore &a = model.cores[model.pairs[i].a], &b = model.cores[model.pairs[i].b];
-      const Segment segment = PlaceSegment(model, a, hand);
-      const F link_a(static_cast<float>(a.link)), link_b(static_cast<float>(b.link));
-      if (b.chain < 0)
-        MeetPalm(segment, a.radius, b, contact, link_a);
-      else
-        MeetSegments(segment, PlaceSegment(model, b, hand), a.radius + b.radius, contact, link_a,
-                     link_b);
-    }
-    if (Any(contact.gap < F(2 * kForceReach))) ++count;
-  }
-  return count;
 }
 
 }  // namespace HWY_NAMESPACE

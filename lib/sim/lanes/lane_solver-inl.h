@@ -7,7 +7,7 @@
 #define DEXREMOE_LANE_SOLVER_INL_H
 #endif
 
-#include "sim/lanes/lane_contacts-inl.h"
+#include "sim/lanes/lane_self_contacts-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace dexremoe {
