@@ -11,7 +11,7 @@
 #include "sim/lanes/lane_store.h"
 #include "sim/lanes/lanes_kernel.h"
 #include "sim/lanes/object_field.h"
-#include "sim/sim_rows.h"
+#include "sim/sim_shared.h"
 
 namespace dexremoe {
 namespace {

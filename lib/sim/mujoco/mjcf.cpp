@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "base/error.h"
+#include "sim/sim_shared.h"
 
 namespace dexremoe {
 namespace {
@@ -115,19 +116,10 @@ std::string ObjectText(const SimObject& object) {
   return text + "</body>\n";
 }
 
-// Fingertips of different fingers, and a fingertip and the palm; never a link and its parent.
-bool MayTouch(const HandModel& hand, const Collider& a, const Collider& b) {
-  if (!a.fingertip) return false;
-  if (b.fingertip) return hand.links[a.link].chain < hand.links[b.link].chain;
-  return b.link == 0 && hand.links[a.link].parent != 0;
-}
-
 std::string PairsOf(const HandModel& hand) {
   std::string text;
-  for (std::size_t i = 0; i < hand.colliders.size(); ++i)
-    for (std::size_t j = 0; j < hand.colliders.size(); ++j)
-      if (i != j && MayTouch(hand, hand.colliders[i], hand.colliders[j]))
-        text += fmt::format("<pair geom1=\"collider{}\" geom2=\"collider{}\"/>\n", i, j);
+  for (const auto& [i, j] : SelfContactPairs(hand))
+    text += fmt::format("<pair geom1=\"collider{}\" geom2=\"collider{}\"/>\n", i, j);
   return text;
 }
 

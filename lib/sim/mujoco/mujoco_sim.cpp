@@ -10,7 +10,7 @@
 
 #include "base/check.h"
 #include "sim/mujoco/mujoco_env.h"
-#include "sim/sim_rows.h"
+#include "sim/sim_shared.h"
 
 namespace dexremoe {
 namespace {

@@ -2,28 +2,10 @@
 #if __has_include(<mujoco/mujoco.h>)
 #include "base/error.h"
 #include "sim/mujoco/mujoco_env.h"
+#include "sim/sim_shared.h"
 
 namespace dexremoe {
 namespace {
-
-using PhysicsNumbers = std::array<double, 11>;
-
-PhysicsNumbers NumbersOf(const EnvPhysics& p) {
-  return {p.mass,      p.com.x(),   p.com.y(),     p.com.z(),     p.friction,   p.scale,
-          p.kp_factor, p.kd_factor, p.gravity.x(), p.gravity.y(), p.gravity.z()};
-}
-
-EnvPhysics PhysicsOf(const PhysicsNumbers& n) {
-  EnvPhysics physics;
-  physics.mass = n[0];
-  physics.com = {n[1], n[2], n[3]};
-  physics.friction = n[4];
-  physics.scale = n[5];
-  physics.kp_factor = n[6];
-  physics.kd_factor = n[7];
-  physics.gravity = {n[8], n[9], n[10]};
-  return physics;
-}
 
 template <typename T>
 void ReadSized(ByteReader& in, std::vector<T>& values, const char* field) {

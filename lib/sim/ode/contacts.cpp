@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/sim_shared.h"
+
 namespace dexremoe {
 namespace {
 
@@ -37,12 +39,6 @@ bool SpheresApart(const PlacedShape& a, const PlacedShape& b, double margin) {
   return (a.Place(a.shape->center) - b.Place(b.shape->center)).squaredNorm() > reach * reach;
 }
 
-bool MayTouch(const HandModel& hand, const Collider& a, const Collider& b) {
-  if (!a.fingertip) return false;
-  if (b.fingertip) return hand.links[a.link].chain < hand.links[b.link].chain;
-  return b.link == 0 && hand.links[a.link].parent != 0;
-}
-
 }  // namespace
 
 ContactModel::ObjectShape ShapeOfObject(const ConvexParts& parts, const std::string& name) {
@@ -60,11 +56,7 @@ ContactModel ContactModelOf(const HandModel& hand) {
   ContactModel model;
   for (const Collider& collider : hand.colliders)
     model.hand.push_back({ShapeOfCollider(collider), collider.link, collider.X_LC});
-  const int count = static_cast<int>(hand.colliders.size());
-  for (int i = 0; i < count; ++i)
-    for (int j = 0; j < count; ++j)
-      if (i != j && MayTouch(hand, hand.colliders[i], hand.colliders[j]))
-        model.hand_pairs.push_back({i, j});
+  model.hand_pairs = SelfContactPairs(hand);
   return model;
 }
 

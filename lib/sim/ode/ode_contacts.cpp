@@ -143,9 +143,10 @@ Vector3d OdeEnv::FrictionDirection(const ActiveContact& contact) const {
 
 // Coulomb's law couples friction bounds and normal forces, which the stepper cannot. Its own way
 // out (dContactApprox1) takes the normal forces of the frictionless problem, and the pyramid of its
-// bounds holds 41 % too much along the diagonal. We bound friction by mu times the normal force of the substep before, along the
-// direction friction works in, and leave the stepper's way to new contacts. Measured: slip angles
-// within 1 % of atan(mu) in every direction at two substeps, 92 % of closed grasps hold against 81
+// bounds holds 41 % too much along the diagonal. We bound friction by mu times the normal force of
+// the substep before, along the direction friction works in, and leave the stepper's way to new
+// contacts. Measured: slip angles within 1 % of atan(mu) in every direction at two substeps, 92 %
+// of closed grasps hold against 81
 // %.
 void OdeEnv::SetFriction(const ActiveContact& contact, dContact& joint) const {
   joint.surface.mode |= dContactSlip1 | dContactSlip2;

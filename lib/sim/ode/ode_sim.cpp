@@ -7,7 +7,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "sim/ode/ode_env.h"
-#include "sim/sim_rows.h"
+#include "sim/sim_shared.h"
 
 namespace dexremoe {
 namespace {

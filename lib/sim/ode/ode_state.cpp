@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "sim/ode/ode_env.h"
+#include "sim/sim_shared.h"
 
 namespace dexremoe {
 namespace {
@@ -30,25 +31,6 @@ void PutState(dBodyID body, const BodyState& state) {
   std::copy_n(at + 7, 12, const_cast<dReal*>(dBodyGetRotation(body)));
   dBodySetLinearVel(body, at[19], at[20], at[21]);
   dBodySetAngularVel(body, at[22], at[23], at[24]);
-}
-
-using PhysicsNumbers = std::array<double, 11>;
-
-PhysicsNumbers NumbersOf(const EnvPhysics& p) {
-  return {p.mass,      p.com.x(),   p.com.y(),     p.com.z(),     p.friction,   p.scale,
-          p.kp_factor, p.kd_factor, p.gravity.x(), p.gravity.y(), p.gravity.z()};
-}
-
-EnvPhysics PhysicsOf(const PhysicsNumbers& n) {
-  EnvPhysics physics;
-  physics.mass = n[0];
-  physics.com = {n[1], n[2], n[3]};
-  physics.friction = n[4];
-  physics.scale = n[5];
-  physics.kp_factor = n[6];
-  physics.kd_factor = n[7];
-  physics.gravity = {n[8], n[9], n[10]};
-  return physics;
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
-// What every engine does with the rows of SimState and the arguments of BatchSim.
+// What the engines share: rows of SimState, checks of arguments, which colliders may touch.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "sim/batch_sim.h"
 
@@ -19,5 +21,14 @@ void CheckObject(int env, int object, std::size_t num_objects);
 void CheckStateToSet(int env, const EnvState& state, int num_joints);
 void CheckTargets(std::span<const double> targets, std::span<const std::uint8_t> active,
                   const BatchSim& sim, std::span<const std::int64_t> steps);
+
+// Pairs of hand colliders that may touch: fingertips of different fingers (the lower finger first),
+// and a tip and the palm unless the tip hangs on the palm. Links next to each other never do.
+std::vector<std::array<int, 2>> SelfContactPairs(const HandModel& hand);
+
+// Physical parameters as plain numbers, for saved states.
+using PhysicsNumbers = std::array<double, 11>;
+PhysicsNumbers NumbersOf(const EnvPhysics& physics);
+EnvPhysics PhysicsOf(const PhysicsNumbers& numbers);
 
 }  // namespace dexremoe

@@ -1,4 +1,4 @@
-#include "sim/sim_rows.h"
+#include "sim/sim_shared.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +15,12 @@ bool AllFinite(std::span<const double> values) {
   for (const double v : values) sum += v;
   return std::isfinite(sum) ||
          std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+bool MayTouch(const HandModel& hand, const Collider& a, const Collider& b) {
+  if (!a.fingertip) return false;
+  if (b.fingertip) return hand.links[a.link].chain < hand.links[b.link].chain;
+  return b.link == 0 && hand.links[a.link].parent != 0;
 }
 
 }  // namespace
@@ -70,6 +76,32 @@ void CheckTargets(std::span<const double> targets, std::span<const std::uint8_t>
   for (std::size_t env = 0; env < n; ++env)
     if ((active.empty() || active[env]) && !AllFinite(targets.subspan(env * joints, joints)))
       Fail("environment {}: step {}: target: expected finite angles", env, steps[env]);
+}
+
+std::vector<std::array<int, 2>> SelfContactPairs(const HandModel& hand) {
+  std::vector<std::array<int, 2>> pairs;
+  const int count = static_cast<int>(hand.colliders.size());
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j)
+      if (i != j && MayTouch(hand, hand.colliders[i], hand.colliders[j])) pairs.push_back({i, j});
+  return pairs;
+}
+
+PhysicsNumbers NumbersOf(const EnvPhysics& p) {
+  return {p.mass,      p.com.x(),   p.com.y(),     p.com.z(),     p.friction,   p.scale,
+          p.kp_factor, p.kd_factor, p.gravity.x(), p.gravity.y(), p.gravity.z()};
+}
+
+EnvPhysics PhysicsOf(const PhysicsNumbers& n) {
+  EnvPhysics physics;
+  physics.mass = n[0];
+  physics.com = {n[1], n[2], n[3]};
+  physics.friction = n[4];
+  physics.scale = n[5];
+  physics.kp_factor = n[6];
+  physics.kd_factor = n[7];
+  physics.gravity = {n[8], n[9], n[10]};
+  return physics;
 }
 
 }  // namespace dexremoe
