@@ -234,6 +234,8 @@ class Bench {
     const LanesProfile profile = StopProfile(rollout.sim());
     for (std::size_t i = 0; i < profile.phases.size(); ++i)
       Record("phases", setting.label, profile.phases[i] + ", %", 100 * profile.shares[i], 1);
+    Record("phases", setting.label, "contact slots a substep", profile.slots, 1);
+    Record("phases", setting.label, "lanes busy in them, %", 100 * profile.occupancy, 1);
   }
 
   SimBenchOptions options_;

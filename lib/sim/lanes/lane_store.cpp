@@ -146,8 +146,7 @@ bool LaneStore::AllFinite(int block) const {
   const float* rows = rows_.data() + static_cast<std::size_t>(block) * at.rows * kBlockLanes;
   float sums[kBlockLanes] = {};  // of zeros, or not a number
   for (int row = at.q; row < at.push; ++row)
-    for (int lane = 0; lane < kBlockLanes; ++lane)
-      sums[lane] += 0 * rows[row * kBlockLanes + lane];
+    for (int lane = 0; lane < kBlockLanes; ++lane) sums[lane] += 0 * rows[row * kBlockLanes + lane];
   return std::all_of(sums, sums + kBlockLanes, [](float sum) { return sum == 0; });
 }
 

@@ -43,16 +43,16 @@ HWY_INLINE std::uint64_t Now() {
 // Adds the time since the last call to one phase.
 class Clock {
  public:
-  explicit Clock(PhaseTicks* ticks) : ticks_(ticks), last_(ticks ? Now() : 0) {}
+  explicit Clock(KernelCounts* counts) : counts_(counts), last_(counts ? Now() : 0) {}
   HWY_INLINE void Count(LanesPhase phase) {
-    if (ticks_ == nullptr) return;
+    if (counts_ == nullptr) return;
     const std::uint64_t now = Now();
-    (*ticks_)[phase] += now - last_;
+    counts_->ticks[phase] += now - last_;
     last_ = now;
   }
 
  private:
-  PhaseTicks* ticks_;
+  KernelCounts* counts_;
   std::uint64_t last_;
 };
 
@@ -216,19 +216,31 @@ HWY_NOINLINE void Finish(const LanesModel& model, float* block, F rate, Substep&
   Store(depth, Row(block, at.depth));
 }
 
-HWY_INLINE void StepLanes(const LanesModel& model, float* block, PhaseTicks* ticks) {
+HWY_INLINE void CountSlots(const LanesModel& model, const Substep& s, KernelCounts* counts) {
+  if (counts == nullptr) return;
+  ++counts->substeps;
+  for (int g = 0; g <= model.layout.chains; ++g) {
+    counts->slots += s.used[g];
+    counts->lanes += s.used[g] * hn::Lanes(FloatTag());
+    for (int k = 0; k < s.used[g]; ++k)
+      counts->points += hn::CountTrue(FloatTag(), s.found[g].count > F(static_cast<float>(k)));
+  }
+}
+
+HWY_INLINE void StepLanes(const LanesModel& model, float* block, KernelCounts* counts) {
   const BlockLayout& at = model.layout;
   const float step = model.substep / static_cast<float>(model.inner_steps);
   const F h(step), rate(1 / step), friction = Load(Row(block, at.friction));
   Substep s;
   LoadHand(model, block, s.hand);
-  Clock clock(ticks);
+  Clock clock(counts);
   for (int i = 0; i < model.substeps; ++i) {
     Start(model, block, h, s);
     clock.Count(kDynamicsPhase);
     FindAll(model, block, s);
     clock.Count(kFieldPhase);
     SetUp(model, block, s);
+    CountSlots(model, s, counts);
     clock.Count(kSetUpPhase);
     for (int k = 0; k < model.inner_steps; ++k) Advance(model, block, friction, h, rate, s);
     clock.Count(kSolvePhase);
@@ -240,9 +252,9 @@ HWY_INLINE void StepLanes(const LanesModel& model, float* block, PhaseTicks* tic
 }
 
 // Narrow instruction sets pass over the block several times.
-void StepBlock(const LanesModel& model, float* block, PhaseTicks* ticks) {
+void StepBlock(const LanesModel& model, float* block, KernelCounts* counts) {
   const int lanes = static_cast<int>(hn::Lanes(FloatTag()));
-  for (int lane = 0; lane < kBlockLanes; lane += lanes) StepLanes(model, block + lane, ticks);
+  for (int lane = 0; lane < kBlockLanes; lane += lanes) StepLanes(model, block + lane, counts);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -251,6 +263,14 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace dexremoe {
+
+void KernelCounts::Add(const KernelCounts& other) {
+  for (int phase = 0; phase < kPhases; ++phase) ticks[phase] += other.ticks[phase];
+  substeps += other.substeps;
+  slots += other.slots;
+  points += other.points;
+  lanes += other.lanes;
+}
 
 std::vector<LanesKernel> LanesKernels() {
   const std::int64_t supported = hwy::SupportedTargets();

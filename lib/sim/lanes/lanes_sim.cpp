@@ -89,12 +89,11 @@ class LanesSim : public BatchSim {
   void Step(std::span<const double> targets, std::span<const std::uint8_t> active) override {
     CheckTargets(targets, active, *this, steps_);
     if (!grouped_) Group();
-    std::vector<PhaseTicks> ticks(profiling_ ? pool_.workers() : 0, PhaseTicks{});
+    std::vector<KernelCounts> counts(profiling_ ? pool_.workers() : 0);
     pool_.ParallelFor(store_.blocks(), [&](int block, int worker) {
-      StepOne(block, targets, active, profiling_ ? &ticks[worker] : nullptr);
+      StepOne(block, targets, active, profiling_ ? &counts[worker] : nullptr);
     });
-    for (const PhaseTicks& worker : ticks)
-      for (int phase = 0; phase < kPhases; ++phase) ticks_[phase] += worker[phase];
+    for (const KernelCounts& worker : counts) counts_.Add(worker);
   }
 
   LanesFootprint Footprint() const {
@@ -103,15 +102,18 @@ class LanesSim : public BatchSim {
   }
   void StartProfile() {
     profiling_ = true;
-    ticks_ = {};
+    counts_ = {};
   }
   LanesProfile StopProfile() {
     profiling_ = false;
     LanesProfile profile;
     profile.phases = {"kinematics and dynamics", "distance field", "contact set-up", "solver",
                       "finish"};
-    const double sum = std::accumulate(ticks_.begin(), ticks_.end(), 0.0);
-    for (const std::uint64_t ticks : ticks_) profile.shares.push_back(ticks / std::max(sum, 1.0));
+    const double sum = std::accumulate(counts_.ticks.begin(), counts_.ticks.end(), 0.0);
+    for (const std::uint64_t ticks : counts_.ticks)
+      profile.shares.push_back(ticks / std::max(sum, 1.0));
+    profile.slots = counts_.slots / std::max(1.0, static_cast<double>(counts_.substeps));
+    profile.occupancy = counts_.points / std::max(1.0, static_cast<double>(counts_.lanes));
     return profile;
   }
 
@@ -139,7 +141,7 @@ class LanesSim : public BatchSim {
 
   // Steps the active environments of a block. The kernel moves all lanes; the others are put back.
   void StepOne(int block, std::span<const double> targets, std::span<const std::uint8_t> active,
-               PhaseTicks* ticks) {
+               KernelCounts* counts) {
     const int first = block * kBlockLanes, last = std::min(first + kBlockLanes, num_envs_);
     std::vector<std::pair<int, std::vector<float>>> resting;  // slots and their numbers
     for (int slot = first; slot < last; ++slot) {
@@ -150,7 +152,7 @@ class LanesSim : public BatchSim {
     for (int slot = first; slot < last; ++slot)
       store_.PutTargets(slot,
                         &targets[static_cast<std::size_t>(env_of_slot_[slot]) * num_joints()]);
-    kernel_.step(model_, store_.Block(block), ticks);
+    kernel_.step(model_, store_.Block(block), counts);
     for (const auto& [slot, numbers] : resting)
       store_.PutNumbers(slot, store_.object(slot), numbers);
     const bool finite = store_.AllFinite(block);
@@ -175,7 +177,7 @@ class LanesSim : public BatchSim {
   std::vector<std::int64_t> steps_;  // [N] control steps since SetState
   bool grouped_ = false;             // slots are in order of the objects
   bool profiling_ = false;
-  PhaseTicks ticks_{};
+  KernelCounts counts_;
   SimState state_;
 };
 

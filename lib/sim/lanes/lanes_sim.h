@@ -34,6 +34,8 @@ struct LanesProfile {
   // Share of the kernels' time, summing to 1: names and shares by phase.
   std::vector<std::string> phases;
   std::vector<double> shares;
+  double slots = 0;      // contact slots that a vector of lanes solves in a substep
+  double occupancy = 0;  // share of the lanes of those slots that have a contact in them
 };
 
 // Of a simulator that MakeLanesSim made; throws Error for another engine's.
