@@ -194,3 +194,5 @@ publish:  ## copy the tables and figures of a finished run to results/tables and
 	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png curves.png per_object.png tsne.png strip.png) paper_figs/
 	@if [ -f results/cube/tables/cube.md ]; then cp results/cube/tables/cube.md results/tables/ && \
 	  cp results/cube/figures/base.png paper_figs/cube.png; fi
+	@for table in results/transfer*/tables/engines*.md; do [ ! -f $$table ] || \
+	  cp $$table results/tables/$$(basename $$(dirname $$(dirname $$table)))_$$(basename $$table); done

@@ -45,7 +45,7 @@ void RenderTool::Register(Options& options) {
   options.Add("height", &height, "pixels (episode, video, hand)").Range(16, 16384);
   options.Add("episode", &episode, "number within the trace; -1 takes the most successful one");
   options.Add("first", &first, "first control step").Range(0, 1e9);
-  options.Add("last", &last, "last control step; -1 takes the end");
+  options.Add("last", &last, "last control step, at most the episode's; -1 takes the end");
   options.Add("frames", &frames, "pictures of a strip").Range(1, 64);
   options.Add("steps", &steps, "control steps of a strip, or the one of an episode picture");
   options.Add("rate", &rate, "frames per second of a video").Range(1, 240);
@@ -90,7 +90,7 @@ void RenderTool::RunEpisode() const {
   Renderer renderer(quality);
   const Fonts fonts;
   EpisodeView view(renderer, fonts, model, mesh, file, number, trace);
-  const int end = last < 0 ? view.length() - 1 : last;
+  const int end = last < 0 ? view.length() - 1 : std::min(last, view.length() - 1);
   if (kind == "video") {
     Progress progress("video", 1);
     view.Film(out, first, end, Width(640), height, rate, PlaceNamed(goal),

@@ -141,6 +141,12 @@ void LaneStore::Read(int slot, int env, SimState& state) const {
   state.max_penetration[row] = At(slot, at.depth);
 }
 
+void LaneStore::Prefetch(int block) const {
+  const std::size_t size = static_cast<std::size_t>(model_.layout.rows) * kBlockLanes;
+  const float* rows = rows_.data() + block * size;
+  for (std::size_t i = 0; i < size; i += kBlockLanes) __builtin_prefetch(rows + i, 1, 2);
+}
+
 bool LaneStore::AllFinite(int block) const {
   const BlockLayout& at = model_.layout;
   const float* rows = rows_.data() + static_cast<std::size_t>(block) * at.rows * kBlockLanes;

@@ -30,6 +30,8 @@ class LaneStore {
   // Copies the state of `slot` into row `env` of the arrays.
   void Read(int slot, int env, SimState& state) const;
 
+  // Asks the processor to have a block in its cache soon.
+  void Prefetch(int block) const;
   // Whether joints and objects of all lanes of a block have finite states.
   bool AllFinite(int block) const;
 

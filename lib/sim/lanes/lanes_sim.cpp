@@ -152,6 +152,7 @@ class LanesSim : public BatchSim {
     for (int slot = first; slot < last; ++slot)
       store_.PutTargets(slot,
                         &targets[static_cast<std::size_t>(env_of_slot_[slot]) * num_joints()]);
+    PrefetchNext(block, targets);
     kernel_.step(model_, store_.Block(block), counts);
     for (const auto& [slot, numbers] : resting)
       store_.PutNumbers(slot, store_.object(slot), numbers);
@@ -162,6 +163,28 @@ class LanesSim : public BatchSim {
       Read(env);
       if (!finite) CheckRow(state_, env, steps_[env]);
       ++steps_[env];
+    }
+  }
+
+  // The block that a worker takes up after this one: its numbers, and the rows of state and targets
+  // of its environments, which lie apart when objects alternate.
+  void PrefetchNext(int block, std::span<const double> targets) const {
+    const int next = block + pool_.workers();
+    if (next >= store_.blocks()) return;
+    store_.Prefetch(next);
+    const std::size_t joints = num_joints();
+    const int last = std::min((next + 1) * kBlockLanes, num_envs_);
+    for (int slot = next * kBlockLanes; slot < last; ++slot) {
+      const std::size_t env = env_of_slot_[slot];
+      for (std::size_t j = 0; j < joints; j += 8) {  // lines of 8 numbers
+        __builtin_prefetch(&targets[env * joints + j], 0, 2);
+        __builtin_prefetch(&state_.joint_position[env * joints + j], 1, 2);
+        __builtin_prefetch(&state_.joint_velocity[env * joints + j], 1, 2);
+      }
+      __builtin_prefetch(&state_.object_position[3 * env], 1, 2);
+      __builtin_prefetch(&state_.object_rotation[4 * env], 1, 2);
+      __builtin_prefetch(&state_.object_velocity[3 * env], 1, 2);
+      __builtin_prefetch(&state_.object_spin[3 * env], 1, 2);
     }
   }
 
