@@ -139,7 +139,6 @@ HWY_INLINE void MoveChain(const LanesModel& model, int first, const V3& gravity,
       s.bias[first + k] = k == l ? load : s.bias[first + k] + load;
       for (int n = 0; n <= k; ++n) mass[Packed(k, n)] += m * Dot(jv[k], jv[n]) + Dot(Iw, jw[n]);
     }
-    // Entries (k, n) with n <= k use I jw[k]: I is symmetric.
   }
 }
 

@@ -115,7 +115,8 @@ HWY_NOINLINE void SetUp(const LanesModel& model, float* block, Substep& s) {
   for (int k = 0; k < s.self_count; ++k) s.self[k] = SetUpSelf(model, s.self_found[k], s.hand);
 }
 
-// Servo, gravity, push, and the impulses of the step before as a first guess.
+// Calls each(rows, velocity) for the contacts of all chains, then of the palm; `velocity` is the
+// Velocity<N> of chain and object.
 template <class Each>
 HWY_INLINE void ForEachContact(const LanesModel& model, Substep& s, Each&& each) {
   const int chains = static_cast<int>(model.chains.size());
@@ -131,6 +132,7 @@ HWY_INLINE void ForEachContact(const LanesModel& model, Substep& s, Each&& each)
   }
 }
 
+// Servo, gravity, push, and the impulses of the step before as a first guess.
 HWY_INLINE void Drive(const LanesModel& model, F h, F rate, Substep& s) {
   for (int c = 0; c < static_cast<int>(model.chains.size()); ++c)
     WithSize(model.chains[c].size,
@@ -146,6 +148,7 @@ HWY_INLINE void Drive(const LanesModel& model, F h, F rate, Substep& s) {
   }
 }
 
+// One round of Gauss-Seidel. `spent` holds the limits' corrections so far (see LimitJoints).
 HWY_INLINE void Sweep(const LanesModel& model, F friction, F h, F* spent, Substep& s) {
   for (int c = 0; c < static_cast<int>(model.chains.size()); ++c)
     WithSize(model.chains[c].size,
