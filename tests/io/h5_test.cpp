@@ -164,7 +164,7 @@ TEST(H5, MessagesNameFileFieldExpectedAndFound) {
 
 TEST(H5, ForeignAndDamagedFilesAreRefused) {
   EXPECT_THAT(Message([] { H5Reader("/nowhere/x.h5"); }), HasSubstr("/nowhere/x.h5: no such file"));
-  EXPECT_THAT(Message([] { H5Reader("/tmp"); }), HasSubstr("/tmp"));
+  EXPECT_THAT(Message([] { H5Reader("tests"); }), HasSubstr("tests"));
   const std::string path = Path("damaged.h5");
   WriteFile(path, "not an HDF5 file");
   EXPECT_THAT(Message([&] { H5Reader reader(path); }), HasSubstr("expected an HDF5 file"));

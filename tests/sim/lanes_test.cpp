@@ -111,6 +111,49 @@ TEST(Lanes, AnEnvironmentKeepsItsStateWhenAnotherGetsANewObject) {
     EXPECT_EQ(still->Save(env) == changed->Save(env), env != 3) << env;
 }
 
+// Two plates of the base, of which only the second one listed is in the finger's way.
+TEST(Lanes, AFingertipStopsAtEveryColliderOfThePalm) {
+  HandModel hand = scenes::PalmOnly();
+  Collider near = hand.colliders[0];
+  hand.colliders[0].X_LC.p = {0, 0, -0.5};
+  near.X_LC.p = {0, 0, -0.07};  // its face is z = -0.05
+  hand.colliders.push_back(near);
+  Link upper, tip;  // a finger of two links along x that turns down about y
+  upper.name = "upper";
+  upper.parent = 0;
+  upper.chain = tip.chain = 0;
+  tip.name = "tip";
+  tip.parent = 1;
+  upper.mass = tip.mass = 0.03;
+  upper.inertia = tip.inertia = 1e-5 * Eigen::Matrix3d::Identity();
+  hand.links.insert(hand.links.end(), {upper, tip});
+  Joint joint = scenes::Rotor().joints[0];
+  joint.torque_limit = 0.2;
+  Joint second = joint;
+  second.name = "second";
+  second.parent = 1;
+  second.child = 2;
+  second.X_PJ.p = {0.05, 0, 0};
+  hand.joints = {joint, second};
+  hand.chains = {{0, 1}};
+  hand.tip_frames = {Pose()};
+  hand.armature = 0.0015;
+  Collider ball;
+  ball.name = "ball";
+  ball.shape = ColliderShape::kSphere;
+  ball.link = 2;
+  ball.X_LC.p = {0.04, 0, 0};
+  ball.radius = 0.01;
+  ball.fingertip = true;
+  hand.colliders.push_back(ball);
+  Rig rig(Lanes(), hand, {scenes::Cube()});
+  rig->SetState(0, scenes::StateAt(2, {0, 0, 3}));
+  for (int step = 0; step < 60; ++step) rig->Step(std::vector<double>{1.2, 0.0});
+  const EnvState state = rig->GetState(0);
+  const double height = -0.05 * std::sin(state.q[0]) - 0.04 * std::sin(state.q[0] + state.q[1]);
+  EXPECT_NEAR(height - ball.radius, -0.05, 2e-3);
+}
+
 TEST(Lanes, AnEnvironmentTakesLessThanOneAndAHalfKilobytes) {
   GraspScene scene(Lanes(), 1, 1);
   const LanesFootprint footprint = FootprintOf(*scene.rig.sim);

@@ -46,7 +46,6 @@ HWY_INLINE M operator<=(F a, F b) { return hn::Le(a.v, b.v); }
 HWY_INLINE M operator>=(F a, F b) { return hn::Ge(a.v, b.v); }
 HWY_INLINE M operator==(F a, F b) { return hn::Eq(a.v, b.v); }
 HWY_INLINE M And(M a, M b) { return hn::And(a, b); }
-HWY_INLINE M Or(M a, M b) { return hn::Or(a, b); }
 HWY_INLINE M AndNot(M a, M b) { return hn::AndNot(a, b); }  // b and not a
 HWY_INLINE bool Any(M m) { return !hn::AllFalse(FloatTag(), m); }
 

@@ -84,18 +84,25 @@ HWY_INLINE bool SameChains(const LanesModel& model, const LaneCorePair& l, const
          model.cores[l.b].chain == model.cores[r.b].chain;
 }
 
-// Whether in any lane the ball around a chain's tip meets another chain's, or reaches down to a
-// base core that lies across its third axis (chain_b -1).
-HWY_INLINE bool MayMeet(const LanesModel& model, const V3* tips, int chain_a, int chain_b,
-                        const LaneCore& core_b) {
+// Whether in any lane the ball around the tip of the pairs' first chain meets the other core's
+// chain's, or reaches down to a base core, which lies across its third axis. The pairs
+// [first, last) are of the same chains.
+HWY_INLINE bool MayMeet(const LanesModel& model, const V3* tips, std::size_t first,
+                        std::size_t last) {
+  const int chain_a = model.cores[model.pairs[first].a].chain,
+            chain_b = model.cores[model.pairs[first].b].chain;
   const float radius = model.chains[chain_a].tip_radius + 2 * kForceReach;
-  if (chain_b < 0) {
-    const F height = Dot(tips[chain_a] - Everywhere(core_b.center), Everywhere(core_b.axes + 6));
-    return Any(Abs(height) < F(core_b.half[2] + core_b.radius + radius));
+  if (chain_b >= 0) {
+    const V3 d = tips[chain_a] - tips[chain_b];
+    const float reach = radius + model.chains[chain_b].tip_radius;
+    return Any(Dot(d, d) < F(reach * reach));
   }
-  const V3 d = tips[chain_a] - tips[chain_b];
-  const float reach = radius + model.chains[chain_b].tip_radius;
-  return Any(Dot(d, d) < F(reach * reach));
+  for (std::size_t i = first; i < last; ++i) {
+    const LaneCore& base = model.cores[model.pairs[i].b];
+    const F height = Dot(tips[chain_a] - Everywhere(base.center), Everywhere(base.axes + 6));
+    if (Any(Abs(height) < F(base.half[2] + base.radius + radius))) return true;
+  }
+  return false;
 }
 
 HWY_INLINE void PlaceTips(const LanesModel& model, const HandState& hand, V3* tips) {
@@ -119,7 +126,7 @@ HWY_NOINLINE int FindSelfContacts(const LanesModel& model, const HandState& hand
               chain_b = model.cores[model.pairs[k].b].chain;
     const std::size_t first = k;
     while (k < model.pairs.size() && SameChains(model, model.pairs[first], model.pairs[k])) ++k;
-    if (!MayMeet(model, tips, chain_a, chain_b, model.cores[model.pairs[first].b])) continue;
+    if (!MayMeet(model, tips, first, k)) continue;
     SelfContact& contact = contacts[count];
     contact.chain_a = chain_a;
     contact.chain_b = chain_b;

@@ -52,7 +52,7 @@ Quaterniond LaneStore::Rotation_WB(int slot) const {
 
 void LaneStore::PutObject(int slot, int index, const EnvPhysics& physics) {
   const LaneObject& object = model_.objects[index];
-  if (!(physics.mass > 0)) Fail("object mass: expected > 0 kg, found {}", physics.mass);
+  if (!(physics.mass > 0)) Fail("object {}: mass: expected > 0 kg, found {}", index, physics.mass);
   const BlockLayout& at = model_.layout;
   object_[slot] = index;
   const Vector3d com_B = object.q_OB.conjugate() * physics.com;
