@@ -127,7 +127,8 @@ std::vector<std::uint8_t> ReorientBatch::Save() const {
   internal::SaveRecords(impl_->records, out);
   for (int env = 0; env < num_envs(); ++env) {
     const EnvPhysics& p = impl_->physics[env];
-    for (const double number : {p.mass, p.com.x(), p.com.y(), p.com.z(), p.friction, p.scale})
+    for (const double number :
+         {p.mass, p.com.x(), p.com.y(), p.com.z(), p.friction, p.torsional_friction, p.scale})
       out.Put(number);
     out.PutVector(impl_->sim->Save(env));
   }
@@ -145,7 +146,8 @@ void ReorientBatch::Restore(const std::vector<std::uint8_t>& bytes) {
   for (int env = 0; env < num_envs(); ++env) {
     EnvPhysics& p = impl_->physics[env];
     p = {};
-    for (double* number : {&p.mass, &p.com[0], &p.com[1], &p.com[2], &p.friction, &p.scale})
+    for (double* number :
+         {&p.mass, &p.com[0], &p.com[1], &p.com[2], &p.friction, &p.torsional_friction, &p.scale})
       in.GetInto(*number);
     p.gravity = {0, 0, impl_->gravity};
     impl_->sim->Restore(env, in.GetVector<std::uint8_t>());

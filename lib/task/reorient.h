@@ -59,6 +59,7 @@ struct TaskOptions {
   // drawn from scale_range when the grasp was found.
   std::vector<double> mass_range = {0.06, 0.10};  // kg
   std::vector<double> friction_range = {0.9, 1.1};
+  std::vector<double> torsion_range = {0.0, 0.0};  // m, torsional friction; 0: point contacts
   std::vector<double> scale_range = {1.0, 1.0};
   std::vector<double> com_range = {0.0, 0.0};  // m, offset of the centre of mass, each axis
   void Register(Options& options);             // section "task"

@@ -49,6 +49,8 @@ void TaskOptions::Register(Options& options) {
       .Range(1e-3, 1e6);
   options.Add("task.mass_range", &mass_range, "kg: low,high");
   options.Add("task.friction_range", &friction_range, "hand-object coefficient: low,high");
+  options.Add("task.torsion_range", &torsion_range,
+              "torsional friction, moment about the normal over normal force, m: low,high");
   options.Add("task.scale_range", &scale_range, "size factor of grasp search: low,high");
   options.Add("task.com_range", &com_range, "centre-of-mass offset per axis, m: low,high");
 }
@@ -64,6 +66,7 @@ void TaskOptions::Check() const {
   };
   range("mass_range", mass_range, 1e-6);
   range("friction_range", friction_range, 0);
+  range("torsion_range", torsion_range, 0);
   range("scale_range", scale_range, 1e-3);
   range("com_range", com_range, -1);
 }

@@ -20,7 +20,7 @@ template <typename Opts, typename Number, typename List>
 void ForEachOption(Opts& o, Number&& number, List&& list) {
   number(o.tolerance), number(o.goal_angle), number(o.velocity_tolerance), number(o.hold_steps);
   number(o.c_progress), number(o.c_fall);
-  list(o.mass_range), list(o.friction_range), list(o.com_range);
+  list(o.mass_range), list(o.friction_range), list(o.torsion_range), list(o.com_range);
 }
 
 template <typename Record, typename Visit>
