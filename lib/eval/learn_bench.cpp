@@ -14,17 +14,16 @@
 namespace dexremoe {
 namespace {
 
-// The object as training knows it. Its descriptor is random: no number here depends on it.
-TaskObject ForTask(const GraspedObject& object, const TaskOptions& task, std::uint64_t seed) {
+// The object as training knows it. Its descriptor is zero, which is what normalisation over one
+// object makes of any.
+TaskObject ForTask(const GraspedObject& object, const TaskOptions& task) {
   TaskObject result;
   result.name = object.sim.name;
   result.split = "train";
   result.sim = object.sim;
   result.mass = (task.mass_range[0] + task.mass_range[1]) / 2;
   result.grasps = object.grasps;
-  Rng rng(seed, Stream::kTest);
-  for (int i = 0; i < kShapeFeatureSize; ++i)
-    result.feature.push_back(static_cast<float>(rng.Normal()));
+  result.feature.assign(kShapeFeatureSize, 0.0f);
   return result;
 }
 
@@ -45,7 +44,7 @@ void LearnBenchOptions::Register(Options& options) {
 
 void LearnBenchOptions::MakeQuick() {
   envs = {64, 128};
-  mini_epochs = {1, 2};
+  mini_epochs = {2};
   minibatch = 512;
   hidden = 32;
   slices = 2;
@@ -56,7 +55,8 @@ PpoOptions LearnBenchOptions::Ppo(int num_envs, int epochs) const {
   PpoOptions ppo;
   ppo.envs = num_envs;
   ppo.horizon = horizon;
-  ppo.minibatch = std::min(minibatch, num_envs * horizon);
+  ppo.minibatch =
+      static_cast<int>(std::min<std::int64_t>(minibatch, std::int64_t{num_envs} * horizon));
   ppo.mini_epochs = epochs;
   return ppo;
 }
@@ -136,8 +136,7 @@ void TimedTraining::Impl::Forward() {
 TimedTraining::TimedTraining(const PpoOptions& ppo, const PolicyOptions& policy,
                              const HandModel& hand, const TaskOptions& task,
                              const GraspedObject& object, std::uint64_t seed, ThreadPool& pool)
-    : impl_(std::make_unique<Impl>(ppo, policy, hand, task, ForTask(object, task, seed), seed,
-                                   pool)) {}
+    : impl_(std::make_unique<Impl>(ppo, policy, hand, task, ForTask(object, task), seed, pool)) {}
 
 TimedTraining::~TimedTraining() = default;
 
