@@ -38,7 +38,10 @@ void LearnBenchOptions::Register(Options& options) {
   options.Add("hidden", &hidden, "width of the policy's hidden layers").Range(1, 8192);
   options.Add("slices", &slices, "time slices of each part").Range(1, 1000);
   options.Add("slice", &slice, "seconds of a time slice; at least one iteration").Range(0, 60);
-  options.Add("peer", &peer, "program that times the update on libtorch; empty: none").NotStored();
+  options
+      .Add("peer", &peer,
+           "program that times the update on libtorch, for the last of --mini_epochs")
+      .NotStored();
   options.Add("seed", &seed, "of all random numbers");
 }
 

@@ -24,7 +24,7 @@ struct LearnBenchOptions {
   int hidden = PolicyOptions().hidden;
   int slices = 3;      // of every part, taken in turn
   double slice = 0.5;  // s; at least one iteration
-  std::string peer;    // program that times the update on libtorch; empty: left out
+  std::string peer;    // program that times the update on libtorch, for the last of mini_epochs
   std::uint64_t seed = 1;
   void Register(Options& options);  // without a section
   void MakeQuick();                 // sizes that take seconds

@@ -17,6 +17,7 @@ namespace dexremoe {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 using testing::ThrowsMessage;
@@ -114,6 +115,8 @@ TEST(LearnBench, AMinibatchIsNeverLargerThanTheBatch) {
 TEST(LearnBench, EveryTableHasItsNumbers) {
   LearnBenchOptions options;
   options.MakeQuick();
+  options.envs = {64};
+  options.mini_epochs = {1, 2};
   const auto policy = MakePolicy<float>(options.Policy().Base(66, 23, 11));
   const FakePeer peer(fmt::format("9.9,blas,{},1,1000,1000,0.1", policy->layout().size()));
   options.peer = peer.path();
@@ -129,6 +132,9 @@ TEST(LearnBench, EveryTableHasItsNumbers) {
       EXPECT_LT(m.value, update) << m.row;
     }
   }
+  // The peer is compared at the last number of mini-epochs alone.
+  EXPECT_THAT(MarkdownOf(result.measurements, "peer", ""),
+              AllOf(HasSubstr("| 64 x 2 "), Not(HasSubstr("| 64 x 1 "))));
   // The paper's sizes were not among them.
   EXPECT_THAT(result.Markdown(), Not(HasSubstr("The paper's iteration")));
 }
