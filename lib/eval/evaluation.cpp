@@ -50,6 +50,14 @@ void EvalOptions::Register(Options& options) {
   options.Add("eval.resamples", &resamples, "bootstrap resamples for the intervals").Range(0, 1e6);
 }
 
+TaskOptions EvalTask(const EvalSetup& setup, double tolerance) {
+  TaskOptions task = setup.task;
+  task.tolerance = tolerance;
+  task.goal_timeout = 0;
+  task.near_share = 0;
+  return task;
+}
+
 std::vector<EpisodeJob> MakeJobs(int objects, int episodes) {
   std::vector<EpisodeJob> jobs;
   for (int object = 0; object < objects; ++object)
@@ -118,9 +126,8 @@ std::vector<EvalRun> Evaluate(const EvalSetup& setup, const EvalOptions& options
   const int envs = std::min(options.envs, static_cast<int>(jobs.size()));
   std::vector<EvalRun> runs;
   for (const double tolerance : options.tolerances) {
-    TaskOptions task = setup.task;
-    task.tolerance = tolerance;
-    ReorientBatch batch(task, setup.sim, setup.hand, setup.objects, envs, setup.seed, pool);
+    ReorientBatch batch(EvalTask(setup, tolerance), setup.sim, setup.hand, setup.objects, envs,
+                        setup.seed, pool);
     Progress progress(fmt::format("episodes at {} rad", tolerance),
                       static_cast<double>(jobs.size()));
     EvalRun& run = runs.emplace_back();

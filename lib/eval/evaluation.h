@@ -66,6 +66,10 @@ struct EvalSetup {
   std::uint64_t seed = 0;
 };
 
+// The task of an evaluation: setup.task at this tolerance, without the settings that serve training
+// alone (goal_timeout, near_share).
+TaskOptions EvalTask(const EvalSetup& setup, double tolerance);
+
 // All tolerances: one run of episodes each. Shows progress on stderr.
 std::vector<EvalRun> Evaluate(const EvalSetup& setup, const EvalOptions& options,
                               const ActFunction& act, ThreadPool& pool);

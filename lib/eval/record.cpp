@@ -90,10 +90,9 @@ std::vector<EpisodeTrace> RecordEpisodes(const EvalSetup& setup, const EvalOptio
                                          const ActFunction& act, const std::vector<float>& gates,
                                          ThreadPool& pool) {
   if (jobs.empty()) return {};
-  TaskOptions task = setup.task;
-  task.tolerance = run.tolerance;
   const int count = static_cast<int>(jobs.size());
-  ReorientBatch batch(task, setup.sim, setup.hand, setup.objects, count, setup.seed, pool);
+  ReorientBatch batch(EvalTask(setup, run.tolerance), setup.sim, setup.hand, setup.objects, count,
+                      setup.seed, pool);
   std::vector<EpisodeTrace> traces(jobs.size());
   std::vector<bool> alive(jobs.size(), true);
   StepObserver observer;

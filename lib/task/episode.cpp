@@ -1,5 +1,7 @@
 #include "task/episode.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "task/goal.h"
 
@@ -37,7 +39,9 @@ EpisodeStart DrawStart(const TaskOptions& options, const TaskObject& object, dou
 Eigen::Quaterniond DrawEpisodeGoal(const TaskOptions& options, const Eigen::Quaterniond& q_WO,
                                    std::uint64_t seed, const EpisodeKey& key, int number) {
   Rng rng(seed, Stream::kGoal, {key.object, key.episode, static_cast<std::uint64_t>(number)});
-  return DrawGoal(rng, q_WO, options.tolerance, options.goal_angle);
+  const bool near = options.near_share > 0 && rng.Uniform(0, 1) < options.near_share;
+  const double most = near ? std::min(options.near_angle, options.goal_angle) : options.goal_angle;
+  return DrawGoal(rng, q_WO, options.tolerance, most);
 }
 
 void CheckStarts(const TaskOptions& options, const HandModel& hand, const TaskObject& object) {

@@ -19,9 +19,9 @@ namespace dexremoe {
 struct TaskOptions {
   // Episode (paper, Table II).
   int episode_length = 600;  // control steps
-  // Control steps without a success after which an episode ends as at the clock; 0: never.
-  // NOTE(paper): not there. For training alone: a jammed object teaches little while the clock runs
-  // out.
+  // Control steps without a success after which an episode fails; 0: never. NOTE(paper): not there.
+  // For training alone: a jammed object teaches little while the clock runs out, and hovering near
+  // a goal would be paid for.
   int goal_timeout = 0;
   double fall_distance = 0.12;  // m from the grasp centre; ends the episode
   std::vector<double> grasp_center = {0.0, 0.064, 0.11};  // m in W
@@ -38,6 +38,7 @@ struct TaskOptions {
   double reward_scale = 0.01;
   double c_progress = 0;  // NOTE(paper): not there; times (theta_prev - theta)
   double c_fall = 0;      // NOTE(paper): not there; once, at a fall
+  double c_jam = 0;       // NOTE(paper): not there; once, when goal_timeout runs out
   // Actions: relative targets behind a moving average.
   double action_scale = 0.1;  // rad per control step at a = 1
   double ema = 1.0;           // alpha
@@ -53,7 +54,11 @@ struct TaskOptions {
   // What e_phys shows besides the paper's 23 numbers; see PhysSize.
   std::vector<std::string> extra_inputs;
   // Goals: Haar-uniform, or within goal_angle of the present orientation (a curriculum).
-  double goal_angle = 3.1416;     // rad; pi and more means Haar
+  double goal_angle = 3.1416;  // rad; pi and more means Haar
+  // NOTE(paper): not there. For training alone: this share of the goals lies within near_angle, so
+  // that successes stay frequent while goal_angle widens.
+  double near_share = 0;
+  double near_angle = 1.2;        // rad
   double velocity_tolerance = 1;  // factor on speed_max and spin_max (a curriculum)
   // Physical parameters drawn per episode: uniform in [low, high]. The size is the grasp's: it was
   // drawn from scale_range when the grasp was found.
@@ -81,7 +86,8 @@ inline constexpr int kPhysSize = 23;
 //   "tip_contact"   1 a finger: 1 when its tip touches the object
 int PhysSize(const TaskOptions& options, const HandModel& hand);
 
-enum class EpisodeEnd : std::uint8_t { kNone, kFall, kTimeout };
+// kJam: goal_timeout ran out. Only a timeout leaves the value of the state to be counted on.
+enum class EpisodeEnd : std::uint8_t { kNone, kFall, kTimeout, kJam };
 
 // What one Step gives, row = environment.
 struct StepResult {

@@ -170,7 +170,8 @@ void ReorientBatch::Impl::Begin(int env) {
 void ReorientBatch::Impl::Advance(int env, const float* action) {
   internal::TaskState& s = state;
   if (!running[env]) return;
-  const StepFacts facts = Measure(env, action);
+  StepFacts facts = Measure(env, action);
+  facts.jam = !facts.fall && Jammed(env);
   const double reward = Reward(options, facts);
   ++s.length[env];
   s.total_reward[env] += reward;
@@ -180,7 +181,9 @@ void ReorientBatch::Impl::Advance(int env, const float* action) {
   result.success[env] |= facts.success;
   if (facts.fall)
     result.end[env] = EpisodeEnd::kFall;
-  else if (s.length[env] >= options.episode_length || Jammed(env))
+  else if (facts.jam)
+    result.end[env] = EpisodeEnd::kJam;
+  else if (s.length[env] >= options.episode_length)
     result.end[env] = EpisodeEnd::kTimeout;
   running[env] = result.end[env] == EpisodeEnd::kNone;
 }

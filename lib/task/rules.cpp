@@ -19,8 +19,8 @@ double Reward(const TaskOptions& options, const StepFacts& facts) {
   // NOTE(paper): c_joint_speed and the clip are not given.
   const double effort =
       options.c_joint_speed * facts.excess_joint_speed + options.c_action * facts.squared_action;
-  const double extra =
-      options.c_progress * (facts.previous_angle - facts.angle) + (facts.fall ? options.c_fall : 0);
+  const double extra = options.c_progress * (facts.previous_angle - facts.angle) +
+                       (facts.fall ? options.c_fall : 0) + (facts.jam ? options.c_jam : 0);
   return options.reward_scale * (success + pose + effort + extra);
 }
 

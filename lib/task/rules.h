@@ -18,6 +18,7 @@ struct StepFacts {
   double squared_action = 0;      // |a|^2
   bool success = false;
   bool fall = false;
+  bool jam = false;  // goal_timeout ran out
 };
 
 // All conditions of a success at this control step (holding them is counted by the caller).

@@ -30,6 +30,7 @@ void TaskOptions::Register(Options& options) {
   options.Add("task.reward_scale", &reward_scale, "factor on every reward").Range(1e-9, 1e6);
   options.Add("task.c_progress", &c_progress, "reward per rad of progress");
   options.Add("task.c_fall", &c_fall, "reward of a fall");
+  options.Add("task.c_jam", &c_jam, "reward when goal_timeout runs out");
   options.Add("task.action_scale", &action_scale, "target increment at a = 1, rad per control step")
       .Range(0, 10);
   options.Add("task.ema", &ema, "weight of the new action in the moving average").Range(1e-3, 1);
@@ -45,6 +46,8 @@ void TaskOptions::Register(Options& options) {
       .Choices({"action", "target"});
   options.Add("task.goal_angle", &goal_angle, "goals within this angle, rad; pi and more: any")
       .Range(1e-3, 10);
+  options.Add("task.near_share", &near_share, "share of goals within task.near_angle").Range(0, 1);
+  options.Add("task.near_angle", &near_angle, "rad").Range(1e-3, 10);
   options.Add("task.velocity_tolerance", &velocity_tolerance, "factor on speed_max and spin_max")
       .Range(1e-3, 1e6);
   options.Add("task.mass_range", &mass_range, "kg: low,high");
