@@ -96,7 +96,8 @@ READY := $(OUT)/objects.mk $(call OBJECT_FILES,parts) $(call OBJECT_FILES,shape)
 # $(1): tool and its inputs
 train = mkdir -p $(OUT)/curves && \
   $(BIN)/$(1) $(COMMON) $(SIM) --objects=$(OUT)/objects.csv --out=$(@:.h5=.running.h5) --resume \
-    --curve=$(OUT)/curves/$(notdir $(@:.h5=.csv)) && mv $(@:.h5=.running.h5) $@
+    --curve=$(OUT)/curves/$(notdir $(@:.h5=.csv)) --tensorboard=$(OUT)/tensorboard/$(basename $(notdir $@)) && \
+  mv $(@:.h5=.running.h5) $@
 
 EXPERTS := generalist airplane train animal
 expert_categories_generalist := airplane,animal,head,shoe,train,vehicle

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "rl/checkpoint.h"
+#include "rl/curve_events.h"
 #include "rl/curve_file.h"
 #include "rl/reorient_env.h"
 #include "rl/trainer.h"
@@ -71,13 +72,17 @@ std::string ProgressNote(const CurveRow& row, const IterationTime& time, double 
 
 class Saver {
  public:
-  Saver(const StageOptions& stage, Provenance provenance, const std::vector<CurveRow>& rows)
+  Saver(const StageOptions& stage, Provenance provenance, const TrainState& start)
       : stage_(stage),
         provenance_(std::move(provenance)),
-        curve_(stage.curve, rows),
+        curve_(stage.curve, start.curve),
+        events_(stage.tensorboard, start.samples),
         last_(Clock::now()) {}
 
-  CurveFile& curve() { return curve_; }
+  void Add(const CurveRow& row, const IterationTime& time, double samples) {
+    curve_.Add(row, time, samples);
+    events_.Add(row, time, samples);
+  }
   bool Due() const {
     return std::chrono::duration<double>(Clock::now() - last_).count() >
            60 * stage_.checkpoint_minutes;
@@ -93,6 +98,7 @@ class Saver {
   const StageOptions& stage_;
   Provenance provenance_;
   CurveFile curve_;
+  CurveEvents events_;
   Clock::time_point last_;
 };
 
@@ -103,7 +109,7 @@ void Train(const StageOptions& stage, Trainer& trainer, Saver& saver,
     const double before = static_cast<double>(trainer.state().samples);
     const CurveRow& row = trainer.Iterate();
     const double samples = static_cast<double>(trainer.state().samples) - before;
-    saver.curve().Add(row, trainer.time(), samples);
+    saver.Add(row, trainer.time(), samples);
     progress.Update(std::min(before + samples, stage.samples),
                     ProgressNote(row, trainer.time(), samples));
     if (stop) {
@@ -125,6 +131,7 @@ void StageOptions::Register(Options& options) {
   options.Add("objects", &objects, "objects.csv: those of split train are used").Required();
   options.Add("out", &out, "checkpoint to write (HDF5)").Required().NotStored();
   options.Add("curve", &curve, "learning curve to write (CSV)").NotStored();
+  options.Add("tensorboard", &tensorboard, "folder for TensorBoard's event files").NotStored();
   options.Add("samples", &samples, "environment steps to train for").Required().Range(0, 1e15);
   options.Add("seed", &seed, "of all random streams");
   options.Add("workers", &workers, "threads; 0: as many as processors").Range(0, 1024).NotStored();
@@ -155,7 +162,7 @@ TrainState RunStage(const StageOptions& stage, const Options& options, const Sta
   inputs.insert(inputs.end(), kind.inputs.begin(), kind.inputs.end());
   for (const ObjectEntry& entry : entries) inputs.push_back(entry.grasps);
   Trainer trainer(stage.ppo, start.task, FirstState(stage, options, kind, start, env), env, pool);
-  Saver saver(stage, MakeProvenance(options, stage.seed, inputs), trainer.state().curve);
+  Saver saver(stage, MakeProvenance(options, stage.seed, inputs), trainer.state());
   LogInfo("{}: {} objects, {} environments, {} parameters of which {} in training",
           trainer.state().stage, objects.size(), env.num_envs(), trainer.policy().layout().size(),
           TrainableSet(trainer.policy().layout(), trainer.policy().trainable()).size());

@@ -20,7 +20,8 @@ namespace dexremoe {
 struct StageOptions {
   std::string objects;  // objects.csv
   std::string out;
-  std::string curve;  // CSV; empty for none
+  std::string curve;        // CSV; empty for none
+  std::string tensorboard;  // folder of event files; empty for none
   double samples = 0;
   std::uint64_t seed = 1;
   int workers = 0;
