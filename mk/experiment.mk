@@ -91,12 +91,14 @@ $(OUT)/shape_net.h5: $(OUT)/objects.mk $(call OBJECT_FILES,cloud) | $(BIN)/train
 READY := $(OUT)/objects.mk $(call OBJECT_FILES,parts) $(call OBJECT_FILES,shape) $(call OBJECT_FILES,grasps)
 
 # --- Training -----------------------------------------------------------------------------------
-# A training writes its checkpoints to NAME.running.h5 and takes up from there after a kill.
+# A training writes its checkpoints to NAME.running.h5, the best one beside it, and takes up from
+# there after a kill. NAME.h5 is the last state, NAME.best.h5 the best one (see --help of --out).
 
 # $(1): tool and its inputs
 train = mkdir -p $(OUT)/curves && \
   $(BIN)/$(1) $(COMMON) $(SIM) --objects=$(OUT)/objects.csv --out=$(@:.h5=.running.h5) --resume \
     --curve=$(OUT)/curves/$(notdir $(@:.h5=.csv)) --tensorboard=$(OUT)/tensorboard/$(basename $(notdir $@)) && \
+  if [ -f $(@:.h5=.running.best.h5) ]; then mv $(@:.h5=.running.best.h5) $(@:.h5=.best.h5); fi && \
   mv $(@:.h5=.running.h5) $@
 
 EXPERTS := generalist airplane train animal

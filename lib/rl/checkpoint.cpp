@@ -59,6 +59,7 @@ void WriteRun(H5Writer& file, const TrainState& state) {
   file.WriteScalar("samples", state.samples, {"1", "", "environment steps done"});
   WriteCurriculum(file, state.curriculum);
   WriteWindow(file, state.window);
+  WriteBest(file, state);
   WriteCurve(file, state.curve);
   file.Write("environment", state.environment,
              {static_cast<std::int64_t>(state.environment.size())},
@@ -103,6 +104,7 @@ void ReadRun(const H5Reader& file, TrainState& state) {
   state.samples = file.ReadScalar<std::int64_t>("samples");
   state.curriculum = ReadCurriculum(file);
   state.window = ReadWindow(file);
+  ReadBest(file, state);
   state.curve = ReadCurve(file);
   state.environment = file.ReadValues<std::uint8_t>("environment", {-1});
   state.table.names = file.ReadStrings("table/name");

@@ -139,6 +139,22 @@ std::vector<EpisodeRecord> ReadWindow(const H5Reader& file) {
   return window;
 }
 
+void WriteBest(H5Writer& file, const TrainState& state) {
+  file.WriteScalar("best/progress", state.best.progress,
+                   {"rad", "", "goal angle over velocity tolerance at the best state so far"});
+  file.WriteScalar("best/successes", state.best.successes,
+                   {"1", "", "its successes per episode; -1 before the first full window"});
+  file.WriteScalar("settled", state.settled,
+                   {"1", "", "episodes ended since the difficulty last changed"});
+}
+
+void ReadBest(const H5Reader& file, TrainState& state) {
+  if (!file.Has("settled")) return;  // files from before it was kept
+  state.best.progress = file.ReadScalar<double>("best/progress");
+  state.best.successes = file.ReadScalar<double>("best/successes");
+  state.settled = file.ReadScalar<std::int64_t>("settled");
+}
+
 void WriteCurve(H5Writer& file, const std::vector<CurveRow>& curve) {
   std::vector<double> values;
   for (const CurveRow& row : curve) values.insert(values.end(), row.begin(), row.end());

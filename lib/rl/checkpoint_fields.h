@@ -18,6 +18,10 @@ CurriculumState ReadCurriculum(const H5Reader& file);
 void WriteWindow(H5Writer& file, const std::vector<EpisodeRecord>& window);
 std::vector<EpisodeRecord> ReadWindow(const H5Reader& file);
 
+// The score of the best state so far, and what the next score rests on.
+void WriteBest(H5Writer& file, const TrainState& state);
+void ReadBest(const H5Reader& file, TrainState& state);
+
 void WriteCurve(H5Writer& file, const std::vector<CurveRow>& curve);
 std::vector<CurveRow> ReadCurve(const H5Reader& file);
 

@@ -1,15 +1,13 @@
 #include "rl/stage.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "rl/checkpoint.h"
-#include "rl/curve_events.h"
-#include "rl/curve_file.h"
 #include "rl/reorient_env.h"
+#include "rl/run_files.h"
 #include "rl/trainer.h"
 
 namespace dexremoe {
@@ -54,6 +52,7 @@ TrainState FirstState(const StageOptions& stage, const Options& options, const S
     if (state.table.names != start.table.names || state.table.feature != start.table.feature)
       Fail("{}: table: expected the objects of {}, found others; start anew without --resume",
            stage.out, stage.objects);
+    if (!std::filesystem::exists(BestPath(stage.out))) state.best = {};  // taken away: find it anew
     LogInfo("resuming {} at iteration {}, {} samples", stage.out, state.iteration, state.samples);
     return state;
   }
@@ -70,66 +69,37 @@ std::string ProgressNote(const CurveRow& row, const IterationTime& time, double 
       samples / (time.rollout + time.update));
 }
 
-class Saver {
- public:
-  Saver(const StageOptions& stage, Provenance provenance, const TrainState& start)
-      : stage_(stage),
-        provenance_(std::move(provenance)),
-        curve_(stage.curve, start.curve),
-        events_(stage.tensorboard, start.samples),
-        last_(Clock::now()) {}
-
-  void Add(const CurveRow& row, const IterationTime& time, double samples) {
-    curve_.Add(row, time, samples);
-    events_.Add(row, time, samples);
-  }
-  bool Due() const {
-    return std::chrono::duration<double>(Clock::now() - last_).count() >
-           60 * stage_.checkpoint_minutes;
-  }
-  void Save(Trainer& trainer) {
-    WriteCheckpoint(stage_.out, trainer.Snapshot(), provenance_);
-    curve_.Write();
-    last_ = Clock::now();
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  const StageOptions& stage_;
-  Provenance provenance_;
-  CurveFile curve_;
-  CurveEvents events_;
-  Clock::time_point last_;
-};
-
-void Train(const StageOptions& stage, Trainer& trainer, Saver& saver,
+void Train(const StageOptions& stage, Trainer& trainer, RunFiles& files,
            const std::atomic<bool>& stop) {
   Progress progress(trainer.state().stage, stage.samples);
   while (static_cast<double>(trainer.state().samples) < stage.samples) {
     const double before = static_cast<double>(trainer.state().samples);
     const CurveRow& row = trainer.Iterate();
     const double samples = static_cast<double>(trainer.state().samples) - before;
-    saver.Add(row, trainer.time(), samples);
+    files.Add(trainer, samples);
     progress.Update(std::min(before + samples, stage.samples),
                     ProgressNote(row, trainer.time(), samples));
     if (stop) {
-      saver.Save(trainer);
+      files.Save(trainer);
       Fail(
           "stopped at {} of {:.0f} samples; {} is written; the same command with --resume=true "
           "continues it",
           trainer.state().samples, stage.samples, stage.out);
     }
-    if (saver.Due()) saver.Save(trainer);
+    if (files.Due()) files.Save(trainer);
   }
   progress.Finish();
-  saver.Save(trainer);
+  files.Save(trainer);
 }
 
 }  // namespace
 
 void StageOptions::Register(Options& options) {
   options.Add("objects", &objects, "objects.csv: those of split train are used").Required();
-  options.Add("out", &out, "checkpoint to write (HDF5)").Required().NotStored();
+  options
+      .Add("out", &out, "checkpoint to write (HDF5); the best state goes beside it as NAME.best.h5")
+      .Required()
+      .NotStored();
   options.Add("curve", &curve, "learning curve to write (CSV)").NotStored();
   options.Add("tensorboard", &tensorboard, "folder for TensorBoard's event files").NotStored();
   options.Add("samples", &samples, "environment steps to train for").Required().Range(0, 1e15);
@@ -162,11 +132,13 @@ TrainState RunStage(const StageOptions& stage, const Options& options, const Sta
   inputs.insert(inputs.end(), kind.inputs.begin(), kind.inputs.end());
   for (const ObjectEntry& entry : entries) inputs.push_back(entry.grasps);
   Trainer trainer(stage.ppo, start.task, FirstState(stage, options, kind, start, env), env, pool);
-  Saver saver(stage, MakeProvenance(options, stage.seed, inputs), trainer.state());
+  RunFiles files({stage.out, stage.curve, stage.tensorboard},
+                 MakeProvenance(options, stage.seed, inputs), stage.checkpoint_minutes,
+                 trainer.state());
   LogInfo("{}: {} objects, {} environments, {} parameters of which {} in training",
           trainer.state().stage, objects.size(), env.num_envs(), trainer.policy().layout().size(),
           TrainableSet(trainer.policy().layout(), trainer.policy().trainable()).size());
-  Train(stage, trainer, saver, stop);
+  Train(stage, trainer, files, stop);
   TrainState state = trainer.state();
   state.environment.clear();
   return state;

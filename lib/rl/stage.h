@@ -43,9 +43,10 @@ struct StageKind {
       start;
 };
 
-// Trains on the objects of split "train" until `samples` environment steps are done; writes --out
-// and --curve every checkpoint_minutes and at the end. When `stop` turns true, finishes the
-// iteration, writes both and throws Error that says how to resume. Throws Error on bad input.
+// Trains on the objects of split "train" until `samples` environment steps are done; writes --out,
+// the best state beside it (see Trainer::improved) and --curve every checkpoint_minutes and at the
+// end, the events of --tensorboard at every iteration. When `stop` turns true, finishes the
+// iteration, writes all and throws Error that says how to resume. Throws Error on bad input.
 // Returns the final state, without the environments' bytes.
 TrainState RunStage(const StageOptions& stage, const Options& options, const StageKind& kind,
                     const std::atomic<bool>& stop);

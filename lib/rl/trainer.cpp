@@ -1,7 +1,9 @@
 #include "rl/trainer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 
 #include "base/check.h"
 
@@ -65,6 +67,7 @@ Trainer::~Trainer() = default;
 
 const CurveRow& Trainer::Iterate() {
   const double start = Seconds();
+  state_.environment.clear();  // out of date from here on
   const bool learn_moments = state_.structure.train_encoders;
   RunningMoments obs = state_.normalizers.obs, phys = state_.normalizers.phys;
   const RolloutBatch& batch = rollout_->Collect(
@@ -81,8 +84,11 @@ const CurveRow& Trainer::Iterate() {
   state_.samples += samples;
   AddRecords(batch.records);
   state_.curve.push_back(MakeRow(stats, rate));
-  if (curriculum_.Update(samples, batch.records, state_.curriculum))
+  Judge();
+  if (curriculum_.Update(samples, batch.records, state_.curriculum)) {
     env_.SetDifficulty(state_.curriculum.difficulty);
+    state_.settled = 0;
+  }
   return state_.curve.back();
 }
 
@@ -91,7 +97,18 @@ const TrainState& Trainer::Snapshot() {
   return state_;
 }
 
+void Trainer::Judge() {
+  improved_ = false;
+  if (state_.settled < options_.stats_window) return;
+  const TaskDifficulty& now = state_.curriculum.difficulty;
+  const RunScore score = {std::min(now.goal_angle, std::numbers::pi) / now.velocity_tolerance,
+                          MeansOf(state_.window).successes};
+  improved_ = score > state_.best;
+  if (improved_) state_.best = score;
+}
+
 void Trainer::AddRecords(const std::vector<EpisodeRecord>& records) {
+  state_.settled += static_cast<std::int64_t>(records.size());
   std::vector<EpisodeRecord>& window = state_.window;
   window.insert(window.end(), records.begin(), records.end());
   const std::size_t limit = static_cast<std::size_t>(options_.stats_window);

@@ -30,15 +30,19 @@ class Trainer {
 
   // One rollout and update; appends to state().curve.
   const CurveRow& Iterate();
+  // Whether the last Iterate raised state().best. A score counts once the window is full of
+  // episodes that ended at the present difficulty: what came before says nothing about it.
+  bool improved() const { return improved_; }
   const IterationTime& time() const { return time_; }
 
   const TrainState& state() const { return state_; }
   const Policy<float>& policy() const { return *policy_; }
-  // The state with the environments' bytes, ready for WriteCheckpoint.
+  // The state with the environments' bytes, ready for WriteCheckpoint; valid until Iterate.
   const TrainState& Snapshot();
 
  private:
   void AddRecords(const std::vector<EpisodeRecord>& records);
+  void Judge();
   CurveRow MakeRow(const UpdateStats& stats, double learning_rate) const;
 
   PpoOptions options_;
@@ -50,6 +54,7 @@ class Trainer {
   std::unique_ptr<Rollout> rollout_;
   std::unique_ptr<PpoLearner> learner_;
   IterationTime time_;
+  bool improved_ = false;
 };
 
 }  // namespace dexremoe
