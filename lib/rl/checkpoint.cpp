@@ -61,9 +61,7 @@ void WriteRun(H5Writer& file, const TrainState& state) {
   WriteWindow(file, state.window);
   WriteBest(file, state);
   WriteCurve(file, state.curve);
-  file.Write("environment", state.environment,
-             {static_cast<std::int64_t>(state.environment.size())},
-             {"1", "byte", "state of all environments"});
+  WriteEnvironment(file, state.environment);
   const std::int64_t objects = state.table.objects();
   const std::int64_t width = objects > 0 ? state.table.feature.size() / objects : 0;
   file.WriteStrings("table/name", state.table.names, {"", "object", "objects trained on"});
@@ -106,7 +104,7 @@ void ReadRun(const H5Reader& file, TrainState& state) {
   state.window = ReadWindow(file);
   ReadBest(file, state);
   state.curve = ReadCurve(file);
-  state.environment = file.ReadValues<std::uint8_t>("environment", {-1});
+  state.environment = ReadEnvironment(file);
   state.table.names = file.ReadStrings("table/name");
   const std::int64_t objects = state.table.objects();
   state.table.feature =

@@ -15,7 +15,7 @@
 // | best/progress, /successes, settled    | f64, i64         | RunScore, TrainState::settled     |
 // | curve/column, curve/row               | [20] text, [I,20] f64 | without wall clock           |
 // | table/name, /feature, /category       | [K]              | objects trained on                |
-// | environment                           | [bytes] u8       | VecEnv::Save; none in NAME.best.h5 |
+// | environment, environment_end          | [bytes] u8, [ranks] i64 | VecEnv::Save; none in best |
 // | example/*                             | f32, i32         | normalised inputs and outputs     |
 //
 // A resumed run continues bit for bit; the file holds no wall clock, so equal runs give equal

@@ -25,6 +25,9 @@ void ReadBest(const H5Reader& file, TrainState& state);
 void WriteCurve(H5Writer& file, const std::vector<CurveRow>& curve);
 std::vector<CurveRow> ReadCurve(const H5Reader& file);
 
+void WriteEnvironment(H5Writer& file, const std::vector<std::vector<std::uint8_t>>& ranks);
+std::vector<std::vector<std::uint8_t>> ReadEnvironment(const H5Reader& file);
+
 // A few rows of normalised inputs and what the policy makes of them.
 struct PolicyExample {
   std::vector<float> obs, phys;

@@ -28,10 +28,10 @@ void RunFiles::Add(const Trainer& trainer, double samples) {
 
 bool RunFiles::Due() const { return Clock::now() - last_ > period_; }
 
-void RunFiles::Save(Trainer& trainer) {
+void RunFiles::Save(const TrainState& last) {
   if (best_) WriteCheckpoint(BestPath(paths_.out), *best_, provenance_);
   best_.reset();
-  WriteCheckpoint(paths_.out, trainer.Snapshot(), provenance_);
+  WriteCheckpoint(paths_.out, last, provenance_);
   curve_.Write();
   last_ = Clock::now();
 }

@@ -33,9 +33,10 @@ class RunFiles {
   void Add(const Trainer& trainer, double samples);
   // Whether checkpoint_minutes have gone by since the last Save.
   bool Due() const;
-  // Writes the best state when it is another than before, then the last one and the curve. A kill
-  // between them leaves a best file of the future, which the resumed run writes again.
-  void Save(Trainer& trainer);
+  // Writes the best state when it is another than before, then the last one, a Trainer::Snapshot,
+  // and the curve. A kill between them leaves a best file of the future, which the resumed run
+  // writes again.
+  void Save(const TrainState& last);
 
  private:
   using Clock = std::chrono::steady_clock;

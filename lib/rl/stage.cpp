@@ -1,7 +1,10 @@
 #include "rl/stage.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <optional>
+#include <thread>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -45,13 +48,17 @@ void CheckSizes(const TrainState& state, const VecEnv& env, const std::string& p
 
 // Where the run begins: at the checkpoint it left, or at the stage's first state.
 TrainState FirstState(const StageOptions& stage, const Options& options, const StageKind& kind,
-                      const StageStart& start, const VecEnv& env) {
+                      const StageStart& start, const VecEnv& env, const Communicator& ranks) {
   if (stage.resume && std::filesystem::exists(stage.out)) {
     CheckSameOptions(stage.out, options.Text());
     TrainState state = ReadCheckpoint(stage.out);
     if (state.table.names != start.table.names || state.table.feature != start.table.feature)
       Fail("{}: table: expected the objects of {}, found others; start anew without --resume",
            stage.out, stage.objects);
+    const int processes = static_cast<int>(state.environment.size());
+    if (processes > 0 && processes != ranks.size())
+      Fail("{}: environment_end: expected a run of {} processes as now, found one of {}", stage.out,
+           ranks.size(), processes);
     if (!std::filesystem::exists(BestPath(stage.out))) state.best = {};  // taken away: find it anew
     LogInfo("resuming {} at iteration {}, {} samples", stage.out, state.iteration, state.samples);
     return state;
@@ -69,27 +76,56 @@ std::string ProgressNote(const CurveRow& row, const IterationTime& time, double 
       samples / (time.rollout + time.update));
 }
 
-void Train(const StageOptions& stage, Trainer& trainer, RunFiles& files,
-           const std::atomic<bool>& stop) {
+// `files` on rank 0 only; the ranks decide as one when to save and when to stop.
+void Train(const StageOptions& stage, Trainer& trainer, std::optional<RunFiles>& files,
+           Communicator& ranks, const std::atomic<bool>& stop) {
   Progress progress(trainer.state().stage, stage.samples);
+  const auto save = [&] {
+    const TrainState& last = trainer.Snapshot();
+    if (files) files->Save(last);
+    ranks.Barrier();  // no rank ends before the files are whole
+  };
   while (static_cast<double>(trainer.state().samples) < stage.samples) {
     const double before = static_cast<double>(trainer.state().samples);
     const CurveRow& row = trainer.Iterate();
     const double samples = static_cast<double>(trainer.state().samples) - before;
-    files.Add(trainer, samples);
-    progress.Update(std::min(before + samples, stage.samples),
-                    ProgressNote(row, trainer.time(), samples));
-    if (stop) {
-      files.Save(trainer);
+    if (files) {
+      files->Add(trainer, samples);
+      progress.Update(std::min(before + samples, stage.samples),
+                      ProgressNote(row, trainer.time(), samples));
+    }
+    std::array<double, 2> wishes = {stop ? 1.0 : 0.0, files && files->Due() ? 1.0 : 0.0};
+    ranks.Sum(wishes);
+    if (wishes[0] + wishes[1] > 0) save();
+    if (wishes[0] > 0)
       Fail(
           "stopped at {} of {:.0f} samples; {} is written; the same command with --resume=true "
           "continues it",
           trainer.state().samples, stage.samples, stage.out);
-    }
-    if (files.Due()) files.Save(trainer);
   }
   progress.Finish();
-  files.Save(trainer);
+  save();
+}
+
+// Threads of this rank: those asked for, or its share of the machine's processors.
+int Workers(const StageOptions& stage, const Communicator& ranks) {
+  if (stage.workers > 0) return stage.workers;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / ranks.local_size());
+}
+
+int EnvsPerRank(const StageOptions& stage, const Communicator& ranks) {
+  if (stage.ppo.envs % ranks.size() != 0)
+    Fail("ppo.envs: expected a multiple of {} processes, found {}", ranks.size(), stage.ppo.envs);
+  return stage.ppo.envs / ranks.size();
+}
+
+// Everything that the training rests on, for the provenance.
+std::vector<std::string> Inputs(const StageOptions& stage, const StageKind& kind,
+                                const std::vector<ObjectEntry>& entries) {
+  std::vector<std::string> inputs = {stage.objects, stage.hand.urdf};
+  inputs.insert(inputs.end(), kind.inputs.begin(), kind.inputs.end());
+  for (const ObjectEntry& entry : entries) inputs.push_back(entry.grasps);
+  return inputs;
 }
 
 }  // namespace
@@ -104,7 +140,9 @@ void StageOptions::Register(Options& options) {
   options.Add("tensorboard", &tensorboard, "folder for TensorBoard's event files").NotStored();
   options.Add("samples", &samples, "environment steps to train for").Required().Range(0, 1e15);
   options.Add("seed", &seed, "of all random streams");
-  options.Add("workers", &workers, "threads; 0: as many as processors").Range(0, 1024).NotStored();
+  options.Add("workers", &workers, "threads (of each process); 0: as many as processors")
+      .Range(0, 1024)
+      .NotStored();
   options.Add("resume", &resume, "continue from --out when it exists").NotStored();
   options.Add("checkpoint_minutes", &checkpoint_minutes, "minutes between checkpoints")
       .Range(0, 1e6)
@@ -116,29 +154,33 @@ void StageOptions::Register(Options& options) {
 }
 
 TrainState RunStage(const StageOptions& stage, const Options& options, const StageKind& kind,
-                    const std::atomic<bool>& stop) {
+                    Communicator& ranks, const std::atomic<bool>& stop) {
   stage.ppo.Check();
-  ThreadPool pool(stage.workers);
+  if (ranks.rank() > 0) SetLogLevel(LogLevel::kWarning);  // one voice is enough
+  ThreadPool pool(Workers(stage, ranks));
   const std::vector<ObjectEntry> entries = SelectObjects(stage, kind);
   const std::vector<TaskObject> objects = LoadObjects(entries, {});
   const HandModel hand = LoadHand(stage.hand);
-  ReorientBatch batch(stage.task, stage.sim, hand, objects, stage.ppo.envs, stage.seed, pool);
+  const int envs = EnvsPerRank(stage, ranks);
+  ReorientBatch batch(stage.task, stage.sim, hand, objects, envs, stage.seed, pool);
+  batch.PlaceIn(ranks.rank() * envs, stage.ppo.envs);
   ReorientEnv env(batch);
   const StageStart start = {stage.ppo,
                             {stage.task.goal_angle, stage.task.velocity_tolerance},
                             MakeShapeTable(objects),
                             stage.seed};
-  std::vector<std::string> inputs = {stage.objects, stage.hand.urdf};
-  inputs.insert(inputs.end(), kind.inputs.begin(), kind.inputs.end());
-  for (const ObjectEntry& entry : entries) inputs.push_back(entry.grasps);
-  Trainer trainer(stage.ppo, start.task, FirstState(stage, options, kind, start, env), env, pool);
-  RunFiles files({stage.out, stage.curve, stage.tensorboard},
-                 MakeProvenance(options, stage.seed, inputs), stage.checkpoint_minutes,
-                 trainer.state());
+  Trainer trainer(stage.ppo, start.task, FirstState(stage, options, kind, start, env, ranks), env,
+                  pool, ranks);
+  std::optional<RunFiles> files;
+  if (ranks.rank() == 0)
+    files.emplace(RunPaths{stage.out, stage.curve, stage.tensorboard},
+                  MakeProvenance(options, stage.seed, Inputs(stage, kind, entries)),
+                  stage.checkpoint_minutes, trainer.state());
   LogInfo("{}: {} objects, {} environments, {} parameters of which {} in training",
-          trainer.state().stage, objects.size(), env.num_envs(), trainer.policy().layout().size(),
+          trainer.state().stage, objects.size(), stage.ppo.envs, trainer.policy().layout().size(),
           TrainableSet(trainer.policy().layout(), trainer.policy().trainable()).size());
-  Train(stage, trainer, files, stop);
+  if (ranks.size() > 1) LogInfo("{} processes with {} threads each", ranks.size(), pool.workers());
+  Train(stage, trainer, files, ranks, stop);
   TrainState state = trainer.state();
   state.environment.clear();
   return state;

@@ -9,6 +9,7 @@
 
 #include "base/options.h"
 #include "hand/hand_model.h"
+#include "rl/communicator.h"
 #include "rl/ppo_options.h"
 #include "rl/start.h"
 #include "rl/train_state.h"
@@ -47,9 +48,10 @@ struct StageKind {
 // the best state beside it (see Trainer::improved) and --curve every checkpoint_minutes and at the
 // end, the events of --tensorboard at every iteration. When `stop` turns true, finishes the
 // iteration, writes all and throws Error that says how to resume. Throws Error on bad input.
+// With several ranks each trains on its share of the environments, and rank 0 writes the files.
 // Returns the final state, without the environments' bytes.
 TrainState RunStage(const StageOptions& stage, const Options& options, const StageKind& kind,
-                    const std::atomic<bool>& stop);
+                    Communicator& ranks, const std::atomic<bool>& stop);
 
 // One line for people: "base.h5: 2000000 samples, ...".
 std::string StageSummary(const StageOptions& stage, const TrainState& state);

@@ -63,11 +63,12 @@ struct TrainState {
   double learning_rate = 0;
   std::int64_t iteration = 0, samples = 0;
   CurriculumState curriculum;
-  std::vector<EpisodeRecord> window;      // last ended episodes, oldest first
-  std::int64_t settled = 0;               // episodes ended since the difficulty last changed
-  RunScore best;                          // highest so far
-  std::vector<CurveRow> curve;            // one per iteration
-  std::vector<std::uint8_t> environment;  // VecEnv::Save; empty: episodes start anew
+  std::vector<EpisodeRecord> window;  // last ended episodes, oldest first
+  std::int64_t settled = 0;           // episodes ended since the difficulty last changed
+  RunScore best;                      // highest so far
+  std::vector<CurveRow> curve;        // one per iteration
+  // VecEnv::Save of every rank; empty: episodes start anew.
+  std::vector<std::vector<std::uint8_t>> environment;
 };
 
 }  // namespace dexremoe

@@ -16,7 +16,7 @@ void IterateAndSave(ToyRun& run, RunFiles& files, int count) {
   for (int i = 0; i < count; ++i) {
     run.Iterate(1);
     files.Add(run.trainer, 1920);
-    files.Save(run.trainer);
+    files.Save(run.trainer.Snapshot());
   }
 }
 
