@@ -6,10 +6,6 @@
 
 namespace dexremoe {
 
-std::string BestPath(const std::string& out) {
-  return std::filesystem::path(out).replace_extension(".best.h5");
-}
-
 RunFiles::RunFiles(RunPaths paths, Provenance provenance, double checkpoint_minutes,
                    const TrainState& start)
     : paths_(std::move(paths)),
@@ -17,7 +13,10 @@ RunFiles::RunFiles(RunPaths paths, Provenance provenance, double checkpoint_minu
       period_(60 * checkpoint_minutes),
       curve_(paths_.curve, start.curve),
       events_(paths_.tensorboard, start.samples),
-      last_(Clock::now()) {}
+      last_(Clock::now()) {
+  std::error_code ignored;
+  if (start.best == RunScore()) std::filesystem::remove(paths_.best, ignored);
+}
 
 void RunFiles::Add(const Trainer& trainer, double samples) {
   const CurveRow& row = trainer.state().curve.back();
@@ -29,7 +28,7 @@ void RunFiles::Add(const Trainer& trainer, double samples) {
 bool RunFiles::Due() const { return Clock::now() - last_ > period_; }
 
 void RunFiles::Save(const TrainState& last) {
-  if (best_) WriteCheckpoint(BestPath(paths_.out), *best_, provenance_);
+  if (best_) WriteCheckpoint(paths_.best, *best_, provenance_);
   best_.reset();
   WriteCheckpoint(paths_.out, last, provenance_);
   curve_.Write();

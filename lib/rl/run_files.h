@@ -16,16 +16,15 @@ namespace dexremoe {
 // Where to write; empty paths of curve and tensorboard write nothing.
 struct RunPaths {
   std::string out;          // last state, HDF5
+  std::string best;         // best state, HDF5
   std::string curve;        // CSV
   std::string tensorboard;  // folder
 };
 
-// "base.h5" -> "base.best.h5".
-std::string BestPath(const std::string& out);
-
 class RunFiles {
  public:
-  // `start` is the state that the training starts from or resumes at.
+  // `start` is the state that the training starts from or resumes at; the best file of an earlier
+  // run is removed when it has no best state.
   RunFiles(RunPaths paths, Provenance provenance, double checkpoint_minutes,
            const TrainState& start);
 

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "io/file_lock.h"
 #include "rl/checkpoint.h"
 #include "rl/reorient_env.h"
 #include "rl/run_files.h"
@@ -46,6 +47,12 @@ void CheckSizes(const TrainState& state, const VecEnv& env, const std::string& p
   check("num_actions", env.num_actions(), s.num_actions);
 }
 
+// "base.h5" -> "base.best.h5", unless the user names another.
+std::string BestPath(const StageOptions& stage) {
+  if (!stage.best.empty()) return stage.best;
+  return std::filesystem::path(stage.out).replace_extension(".best.h5");
+}
+
 // Where the run begins: at the checkpoint it left, or at the stage's first state.
 TrainState FirstState(const StageOptions& stage, const Options& options, const StageKind& kind,
                       const StageStart& start, const VecEnv& env, const Communicator& ranks) {
@@ -59,7 +66,7 @@ TrainState FirstState(const StageOptions& stage, const Options& options, const S
     if (processes > 0 && processes != ranks.size())
       Fail("{}: environment_end: expected a run of {} processes as now, found one of {}", stage.out,
            ranks.size(), processes);
-    if (!std::filesystem::exists(BestPath(stage.out))) state.best = {};  // taken away: find it anew
+    if (!std::filesystem::exists(BestPath(stage))) state.best = {};  // taken away: find it anew
     LogInfo("resuming {} at iteration {}, {} samples", stage.out, state.iteration, state.samples);
     return state;
   }
@@ -132,9 +139,8 @@ std::vector<std::string> Inputs(const StageOptions& stage, const StageKind& kind
 
 void StageOptions::Register(Options& options) {
   options.Add("objects", &objects, "objects.csv: those of split train are used").Required();
-  options
-      .Add("out", &out, "checkpoint to write (HDF5); the best state goes beside it as NAME.best.h5")
-      .Required()
+  options.Add("out", &out, "checkpoint to write (HDF5)").Required().NotStored();
+  options.Add("best", &best, "checkpoint of the best state; none: NAME.best.h5 beside --out")
       .NotStored();
   options.Add("curve", &curve, "learning curve to write (CSV)").NotStored();
   options.Add("tensorboard", &tensorboard, "folder for TensorBoard's event files").NotStored();
@@ -157,6 +163,8 @@ TrainState RunStage(const StageOptions& stage, const Options& options, const Sta
                     Communicator& ranks, const std::atomic<bool>& stop) {
   stage.ppo.Check();
   if (ranks.rank() > 0) SetLogLevel(LogLevel::kWarning);  // one voice is enough
+  std::optional<FileLock> lock;  // a killed launcher may have left a training behind
+  if (ranks.rank() == 0) lock.emplace(stage.out);
   ThreadPool pool(Workers(stage, ranks));
   const std::vector<ObjectEntry> entries = SelectObjects(stage, kind);
   const std::vector<TaskObject> objects = LoadObjects(entries, {});
@@ -173,7 +181,7 @@ TrainState RunStage(const StageOptions& stage, const Options& options, const Sta
                   pool, ranks);
   std::optional<RunFiles> files;
   if (ranks.rank() == 0)
-    files.emplace(RunPaths{stage.out, stage.curve, stage.tensorboard},
+    files.emplace(RunPaths{stage.out, BestPath(stage), stage.curve, stage.tensorboard},
                   MakeProvenance(options, stage.seed, Inputs(stage, kind, entries)),
                   stage.checkpoint_minutes, trainer.state());
   LogInfo("{}: {} objects, {} environments, {} parameters of which {} in training",

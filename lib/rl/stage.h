@@ -21,6 +21,7 @@ namespace dexremoe {
 struct StageOptions {
   std::string objects;  // objects.csv
   std::string out;
+  std::string best;         // empty: beside `out`
   std::string curve;        // CSV; empty for none
   std::string tensorboard;  // folder of event files; empty for none
   double samples = 0;

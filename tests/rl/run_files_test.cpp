@@ -20,14 +20,16 @@ void IterateAndSave(ToyRun& run, RunFiles& files, int count) {
   }
 }
 
-RunFiles FilesOf(const std::string& out, const ToyRun& run) {
-  return RunFiles({out, "", ""}, ToyProvenance(), 0, run.trainer.state());
+// Files NAME.h5 and NAME.best.h5.
+RunFiles FilesOf(const std::string& name, const ToyRun& run) {
+  return RunFiles({name + ".h5", name + ".best.h5", "", ""}, ToyProvenance(), 0,
+                  run.trainer.state());
 }
 
 TEST(RunFiles, TheBestFileHoldsTheStateOfMostSuccesses) {
   const TemporaryFolder folder("best");
   ToyRun run(ToyBase());
-  RunFiles files = FilesOf(folder / "run.h5", run);
+  RunFiles files = FilesOf(folder / "run", run);
   IterateAndSave(run, files, 30);
   const TrainState best = ReadCheckpoint(folder / "run.best.h5");
   double highest = 0;
@@ -43,7 +45,8 @@ TEST(RunFiles, NoStateIsTheBestBeforeTheWindowIsFull) {
   PpoOptions ppo = ToyPpo();
   ppo.stats_window = 1000;  // 96 episodes end in each iteration
   ToyRun run(ToyBase(ppo), 2, ppo);
-  RunFiles files = FilesOf(folder / "run.h5", run);
+  WriteFile(folder / "run.best.h5", "of an earlier run");
+  RunFiles files = FilesOf(folder / "run", run);
   IterateAndSave(run, files, 9);
   EXPECT_FALSE(fs::exists(folder / "run.best.h5"));
   IterateAndSave(run, files, 3);
@@ -79,18 +82,18 @@ TEST(RunFiles, AHarderTaskOutranksMoreSuccessesOnceItsEpisodesFillTheWindow) {
 TEST(RunFiles, AKillBetweenBestAndLastLeavesFilesThatAResumedRunMakesEqual) {
   const TemporaryFolder folder("between");
   ToyRun whole(ToyBase());
-  RunFiles whole_files = FilesOf(folder / "whole.h5", whole);
+  RunFiles whole_files = FilesOf(folder / "whole", whole);
   IterateAndSave(whole, whole_files, 12);
   {
     ToyRun first(ToyBase());
-    RunFiles files = FilesOf(folder / "cut.h5", first);
+    RunFiles files = FilesOf(folder / "cut", first);
     IterateAndSave(first, files, 4);
     fs::copy_file(folder / "cut.h5", folder / "last.h5");
     IterateAndSave(first, files, 4);
   }
   fs::rename(folder / "last.h5", folder / "cut.h5");  // the best file is now ahead
   ToyRun second(ReadCheckpoint(folder / "cut.h5"));
-  RunFiles files = FilesOf(folder / "cut.h5", second);
+  RunFiles files = FilesOf(folder / "cut", second);
   IterateAndSave(second, files, 8);
   EXPECT_EQ(ReadFile(folder / "whole.h5"), ReadFile(folder / "cut.h5"));
   EXPECT_EQ(ReadFile(folder / "whole.best.h5"), ReadFile(folder / "cut.best.h5"));

@@ -74,5 +74,21 @@ TEST_F(KilledRun, AStopSignalSavesSaysHowToGoOnAndExitsWith1) {
   }
 }
 
+TEST_F(KilledRun, ASecondProcessDoesNotWriteTheSameCheckpoint) {
+  const std::string line = TrainBase("shared", "--samples=1e9 --resume --checkpoint_minutes=0");
+  const pid_t first = Start(line, "first");
+  WaitForFile(Path("shared.h5"));
+  EXPECT_EQ(Run(line, "second"), 1);
+  EXPECT_THAT(Slurp(Path("second.txt")), HasSubstr("shared.h5: another process is writing it"));
+  kill(first, SIGKILL);
+  Wait(first);
+  const pid_t third = Start(line, "third");  // the dead one holds nothing
+  std::filesystem::remove(Path("shared.csv"));
+  WaitForFile(Path("shared.csv"));
+  kill(third, SIGTERM);
+  EXPECT_EQ(Wait(third), 1);
+  EXPECT_FALSE(std::filesystem::exists(Path("shared.h5.lock")));
+}
+
 }  // namespace
 }  // namespace dexremoe
