@@ -8,14 +8,29 @@ $(BUILD)/bench/bench: $(BENCH_SOURCES:%.cpp=$(BUILD)/obj/%.o) $(ARCHIVES)
 	@$(CXX) $(LDFLAGS) -Wl,--as-needed $(filter %.o,$^) $(LINK_ORDER) $(LIBS) \
 	  -lbenchmark_main -lbenchmark -o $@
 
+# The update on libtorch, for comparison, where Debian's libtorch-dev is installed (too large to
+# ask for). Its products are as fast as the BLAS that stands behind libblas.so.3.
+TORCH_INCLUDE := /usr/include/torch/csrc/api/include
+TORCH_UPDATE = $(if $(wildcard $(TORCH_INCLUDE)/torch/torch.h),$(BUILD)/bench/torch_update)
+TORCH_OBJECTS := $(patsubst %.cpp,$(BUILD)/obj/%.o,$(sort $(wildcard tests/bench/torch/*.cpp)))
+
+$(TORCH_OBJECTS): DEX_CXXFLAGS += -isystem $(TORCH_INCLUDE)
+$(BUILD)/bench/torch_update: $(TORCH_OBJECTS)
+	@mkdir -p $(@D)
+	@echo '  LINK $@'
+	@$(CXX) $(LDFLAGS) $^ -ltorch_cpu -lc10 -ldl -o $@
+
 .PHONY: bench
-bench: deps  ## measure speed and accuracy of the physics, and networks; writes results/bench/
-	+@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench/bench $(BUILD)/bin/bench_sim $(BUILD)/bin/validate_sim
+bench: deps  ## measure speed and accuracy of the physics, speed of learning; writes results/bench/ (install libtorch-dev libopenblas0-openmp to compare with libtorch)
+	+@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench/bench $(TORCH_UPDATE) \
+	  $(addprefix $(BUILD)/bin/,bench_sim validate_sim bench_learn)
 	@mkdir -p results/bench
 	$(BUILD)/bin/bench_sim --workers=$(WORKERS) --out=results/bench/sim.md --csv=results/bench/sim.csv
 	$(BUILD)/bin/validate_sim --workers=$(WORKERS) --out=results/bench/validate_sim.md --csv=results/bench/validate_sim.csv
+	@$(if $(TORCH_UPDATE),,echo 'Learning is not compared with libtorch: no $(TORCH_INCLUDE) (Debian package libtorch-dev).')
+	$(BUILD)/bin/bench_learn --workers=$(WORKERS) $(TORCH_UPDATE:%=--peer=%) --out=results/bench/learn.md --csv=results/bench/learn.csv
 	@$(BUILD)/bench/bench --benchmark_repetitions=3 --benchmark_report_aggregates_only=true \
 	  --benchmark_out=results/bench/bench.json --benchmark_out_format=json \
 	  --benchmark_counters_tabular=true | tee results/bench/bench.txt.tmp
 	@mv results/bench/bench.txt.tmp results/bench/bench.txt
-	@echo 'Written: results/bench/sim.md, validate_sim.md, bench.txt, bench.json'
+	@echo 'Written: results/bench/sim.md, validate_sim.md, learn.md, bench.txt, bench.json'

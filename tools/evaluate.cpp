@@ -78,7 +78,7 @@ void RecordTrace(const EvaluateOptions& o, const EvalSetup& setup, const EvalRun
   const auto jobs = ChooseEpisodes(run, o.trace_episodes, o.trace_choice);
   TraceFile trace;
   trace.policy = std::filesystem::path(o.policy).filename().string();
-  trace.control_rate = setup.sim.control_rate;
+  trace.control_rate = setup.sim.control_rate / setup.task.action_repeat;
   trace.tolerance = run.tolerance;
   for (const Joint& joint : setup.hand.joints) trace.joint_names.push_back(joint.name);
   for (int e = 0; e < runner.gates(); ++e)

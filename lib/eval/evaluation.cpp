@@ -10,13 +10,15 @@
 namespace dexremoe {
 namespace {
 
-// A push every `every` control steps, in a direction that belongs to (object, episode, step).
+// A push every `every` control steps (at the decision that follows), in a direction that belongs to
+// (object, episode, step).
 void PushObjects(ReorientBatch& batch, const std::vector<EpisodeJob>& jobs,
                  const std::vector<int>& job_of_env, const std::vector<int>& age,
                  const PushOptions& push, std::uint64_t seed) {
   if (push.force <= 0) return;
   for (int env = 0; env < batch.num_envs(); ++env) {
-    if (job_of_env[env] < 0 || age[env] == 0 || age[env] % push.every != 0) continue;
+    const bool due = age[env] / push.every > (age[env] - batch.action_repeat()) / push.every;
+    if (job_of_env[env] < 0 || age[env] == 0 || !due) continue;
     const EpisodeJob& job = jobs[job_of_env[env]];
     Rng rng(seed, Stream::kDisturbance,
             {static_cast<std::uint64_t>(job.object), job.episode,
@@ -95,7 +97,7 @@ std::vector<EpisodeRecord> RunJobs(ReorientBatch& batch, const ActFunction& act,
     if (observer.before) observer.before(batch, actions);
     const StepResult& result = batch.Step(actions);
     if (observer.after) observer.after(result);
-    for (int& a : age) ++a;
+    for (int& a : age) a += batch.action_repeat();
     for (EpisodeRecord& record : batch.TakeRecords()) {
       const int job = job_of_env[record.env];
       DEX_CHECK_GE(job, 0);

@@ -56,6 +56,7 @@ EnvPhysics NominalPhysics(const TaskOptions& task, const SimOptions& sim) {
   EnvPhysics physics;
   physics.mass = (task.mass_range[0] + task.mass_range[1]) / 2;
   physics.friction = (task.friction_range[0] + task.friction_range[1]) / 2;
+  physics.torsional_friction = (task.torsion_range[0] + task.torsion_range[1]) / 2;
   physics.gravity = {0, 0, sim.gravity};
   return physics;
 }

@@ -81,7 +81,7 @@ class RandomRollout {
 // Distance of the object of env from task.grasp_center, m.
 double GraspDistance(const SimState& state, int env, const TaskOptions& task);
 
-// The middle of task.mass_range and task.friction_range under sim.gravity.
+// The middle of task.mass_range, task.friction_range and task.torsion_range under sim.gravity.
 EnvPhysics NominalPhysics(const TaskOptions& task, const SimOptions& sim);
 
 }  // namespace dexremoe

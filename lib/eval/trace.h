@@ -11,8 +11,8 @@ namespace dexremoe {
 
 inline constexpr H5Format kTraceFormat{"dexremoe.trace", 1};
 
-// One episode, row = control step. Row t holds the state before action t, the action, and whether
-// the step that followed was a success (the goal of row t + 1 is then a new one).
+// One episode, row = decision (TaskOptions::action_repeat control steps). Row t holds the state
+// before action t, the action, and whether it brought a success (the goal of row t + 1 is then a new one).
 struct EpisodeTrace {
   std::string object;  // name in objects.csv
   std::string category;
@@ -34,7 +34,7 @@ struct EpisodeTrace {
 
 struct TraceFile {
   std::string policy;                     // file name
-  double control_rate = 60;               // Hz
+  double control_rate = 60;               // Hz, rows per second
   double tolerance = 0;                   // rad
   std::vector<std::string> joint_names;   // [J]
   std::vector<std::string> expert_names;  // [E]; empty without a gate

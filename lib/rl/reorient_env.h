@@ -13,7 +13,7 @@ class ReorientEnv final : public VecEnv {
   int num_envs() const override { return batch_.num_envs(); }
   int first_env() const override { return batch_.first_env(); }
   int obs_size() const override { return batch_.obs_size(); }
-  int phys_size() const override { return kPhysSize; }
+  int phys_size() const override { return batch_.phys_size(); }
   int num_actions() const override { return batch_.num_joints(); }
   void ResetAll() override { batch_.ResetAll(); }
   const StepResult& Step(const std::vector<float>& actions) override {

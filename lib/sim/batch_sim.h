@@ -46,6 +46,9 @@ struct EnvPhysics {
   double scale = 1.0;                                     // uniform size factor
   double kp_factor = 1.0, kd_factor = 1.0;                // servo gains relative to the hand's
   Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, 9.81);  // m/s^2 in W
+  // Soft fingers: a moment about a contact's normal resists spin there; m, its bound over the
+  // normal force. Of a patch of radius r under even pressure 2/3 friction r; of a point 0.
+  double torsional_friction = 0;
 };
 
 // State of one environment in generalised coordinates.

@@ -88,8 +88,9 @@ std::vector<std::array<int, 2>> SelfContactPairs(const HandModel& hand) {
 }
 
 PhysicsNumbers NumbersOf(const EnvPhysics& p) {
-  return {p.mass,      p.com.x(),   p.com.y(),     p.com.z(),     p.friction,   p.scale,
-          p.kp_factor, p.kd_factor, p.gravity.x(), p.gravity.y(), p.gravity.z()};
+  return {p.mass,        p.com.x(),     p.com.y(),     p.com.z(),
+          p.friction,    p.scale,       p.kp_factor,   p.kd_factor,
+          p.gravity.x(), p.gravity.y(), p.gravity.z(), p.torsional_friction};
 }
 
 EnvPhysics PhysicsOf(const PhysicsNumbers& n) {
@@ -101,6 +102,7 @@ EnvPhysics PhysicsOf(const PhysicsNumbers& n) {
   physics.kp_factor = n[6];
   physics.kd_factor = n[7];
   physics.gravity = {n[8], n[9], n[10]};
+  physics.torsional_friction = n[11];
   return physics;
 }
 

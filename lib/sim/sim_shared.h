@@ -27,7 +27,7 @@ void CheckTargets(std::span<const double> targets, std::span<const std::uint8_t>
 std::vector<std::array<int, 2>> SelfContactPairs(const HandModel& hand);
 
 // Physical parameters as plain numbers, for saved states.
-using PhysicsNumbers = std::array<double, 11>;
+using PhysicsNumbers = std::array<double, 12>;
 PhysicsNumbers NumbersOf(const EnvPhysics& physics);
 EnvPhysics PhysicsOf(const PhysicsNumbers& numbers);
 

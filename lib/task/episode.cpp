@@ -28,6 +28,7 @@ EpisodeStart DrawStart(const TaskOptions& options, const TaskObject& object, dou
   physics.mass = Draw(rng, options.mass_range);
   physics.friction = Draw(rng, options.friction_range);
   for (double& c : physics.com) c = Draw(rng, options.com_range);
+  physics.torsional_friction = Draw(rng, options.torsion_range);
   physics.scale = object.grasps[start.grasp].scale;
   physics.gravity = {0, 0, gravity};
   return start;

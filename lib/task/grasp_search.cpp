@@ -91,6 +91,7 @@ class Round {
     physics.mass = rng.Uniform(task_.mass_range[0], task_.mass_range[1]);
     physics.friction = rng.Uniform(task_.friction_range[0], task_.friction_range[1]);
     physics.scale = task_.scale * rng.Uniform(task_.scale_range[0], task_.scale_range[1]);
+    physics.torsional_friction = rng.Uniform(task_.torsion_range[0], task_.torsion_range[1]);
     physics.gravity = {0, 0, sim_options_.gravity};
     sim_.SetObject(env, 0, physics);
     sim_.SetState(env, start);

@@ -53,10 +53,10 @@ struct GraspCounts {
 
 // Closes the hand of `count` or more environments at a time around the held object at a
 // Haar-uniform orientation, lets go, and keeps what stays. Chain 0 is the thumb; the last two
-// joints of every chain close, in positive direction. Mass, friction and size are drawn from the
-// task's ranges. Candidate number c draws from its own stream, so the result depends on the seed
-// and the object's name alone. Throws Error naming the object, the candidates and the counts when
-// none is found.
+// joints of every chain close, in positive direction. Mass, friction, torsional friction and size
+// are drawn from the task's ranges. Candidate number c draws from its own stream, so the result
+// depends on the seed and the object's name alone. Throws Error naming the object, the candidates
+// and the counts when none is found.
 GraspSet FindGrasps(const GraspOptions& options, const TaskOptions& task, const SimOptions& sim,
                     const HandModel& hand, const SimObject& object, std::uint64_t seed,
                     ThreadPool& pool, GraspCounts* counts);

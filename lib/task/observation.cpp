@@ -23,6 +23,11 @@ void WritePlace(const TaskOptions& options, const HandModel& hand, int place, co
   }
 }
 
+bool Shows(const TaskOptions& options, const char* name) {
+  const auto& names = options.extra_inputs;
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 }  // namespace
 
 void StartHistory(const TaskOptions& options, const HandModel& hand, const double* q,
@@ -38,8 +43,16 @@ void PushHistory(const TaskOptions& options, const HandModel& hand, const double
   WritePlace(options, hand, kPlaces - 1, q, command, obs);
 }
 
-void WritePhys(const EnvPhysics& physics, const ObjectMotion& motion,
-               const Eigen::Quaterniond& q_WG, float* phys) {
+Eigen::Quaterniond ShownGoal(const TaskOptions& options, const Eigen::Quaterniond& q_WO,
+                             const Eigen::Quaterniond& q_WG) {
+  const Eigen::Vector3d turn = RotationVector(q_WG * q_WO.conjugate());
+  const double angle = turn.norm();
+  if (angle <= options.goal_shown) return q_WG;
+  return Eigen::Quaterniond(Eigen::AngleAxisd(options.goal_shown, turn / angle)) * q_WO;
+}
+
+float* WritePhys(const EnvPhysics& physics, const ObjectMotion& motion,
+                 const Eigen::Quaterniond& q_WG, float* phys) {
   const auto put = [&](double value) { *phys++ = static_cast<float>(value); };
   const auto put_vector = [&](const Eigen::Vector3d& v) { put(v.x()), put(v.y()), put(v.z()); };
   const auto put_rotation = [&](const Eigen::Quaterniond& rotation) {
@@ -55,6 +68,39 @@ void WritePhys(const EnvPhysics& physics, const ObjectMotion& motion,
   put_vector(motion.v);
   put_vector(motion.w);
   put_rotation(motion.X_WO.q * q_WG.conjugate());
+  return phys;
+}
+
+void WriteExtras(const TaskOptions& options, const HandModel& hand, const HandMotion& hand_motion,
+                 const Pose& X_WO, const Eigen::Quaterniond& q_WG, float* extras) {
+  const auto put = [&](double value) { *extras++ = static_cast<float>(value); };
+  if (Shows(options, "goal_vector"))
+    for (const double x : RotationVector(q_WG * X_WO.q.conjugate())) put(x);
+  if (Shows(options, "joint_speed"))
+    for (int j = 0; j < hand.num_joints(); ++j) put(hand_motion.qd[j]);
+  if (Shows(options, "tip_position")) {
+    const std::vector<Pose> X_WL = ForwardKinematics(hand, hand_motion.q);
+    for (std::size_t f = 0; f < hand.chains.size(); ++f) {
+      const Pose X_WF = X_WL[hand.joints[hand.chains[f].back()].child] * hand.tip_frames[f];
+      for (const double x : Eigen::Vector3d(X_WF.p - X_WO.p)) put(x);
+    }
+  }
+  if (Shows(options, "tip_contact"))
+    for (std::size_t f = 0; f < hand.chains.size(); ++f) put(hand_motion.tip_contact[f]);
 }
 
 }  // namespace dexremoe::internal
+
+namespace dexremoe {
+
+int PhysSize(const TaskOptions& options, const HandModel& hand) {
+  const int fingers = static_cast<int>(hand.chains.size());
+  int size = kPhysSize;
+  if (internal::Shows(options, "goal_vector")) size += 3;
+  if (internal::Shows(options, "joint_speed")) size += hand.num_joints();
+  if (internal::Shows(options, "tip_position")) size += 3 * fingers;
+  if (internal::Shows(options, "tip_contact")) size += fingers;
+  return size;
+}
+
+}  // namespace dexremoe

@@ -24,8 +24,22 @@ struct ObjectMotion {
   Eigen::Vector3d v = Eigen::Vector3d::Zero();  // m/s, W
   Eigen::Vector3d w = Eigen::Vector3d::Zero();  // rad/s, W
 };
-// e_phys, see kPhysSize.
-void WritePhys(const EnvPhysics& physics, const ObjectMotion& motion,
-               const Eigen::Quaterniond& q_WG, float* phys);
+// The goal as the policy sees it: q_WG, or the orientation options.goal_shown away on the way
+// there.
+Eigen::Quaterniond ShownGoal(const TaskOptions& options, const Eigen::Quaterniond& q_WO,
+                             const Eigen::Quaterniond& q_WG);
+
+// The first kPhysSize numbers of e_phys; returns one past the last.
+float* WritePhys(const EnvPhysics& physics, const ObjectMotion& motion,
+                 const Eigen::Quaterniond& q_WG, float* phys);
+
+struct HandMotion {
+  const double* q;                  // [J] rad
+  const double* qd;                 // [J] rad/s
+  const std::uint8_t* tip_contact;  // [F]
+};
+// The rest of e_phys, as options.extra_inputs asks (see PhysSize).
+void WriteExtras(const TaskOptions& options, const HandModel& hand, const HandMotion& hand_motion,
+                 const Pose& X_WO, const Eigen::Quaterniond& q_WG, float* extras);
 
 }  // namespace dexremoe::internal

@@ -31,8 +31,11 @@ ReorientBatch::Impl::Impl(const TaskOptions& task_options, const SimOptions& sim
       num_envs(simulator->num_envs()),
       joints(hand_model.num_joints()),
       total_envs(num_envs),
+      phys_size(PhysSize(task_options, hand_model)),
       pool(thread_pool),
       sim(std::move(simulator)),
+      running(num_envs, 1),
+      motions(num_envs),
       physics(num_envs) {
   DEX_CHECK_EQ(sim->num_joints(), joints);
   options.Check();
@@ -41,7 +44,7 @@ ReorientBatch::Impl::Impl(const TaskOptions& task_options, const SimOptions& sim
     internal::CheckStarts(options, hand, object);
     object_keys.push_back(internal::ObjectKey(object.name));
   }
-  state.Resize(num_envs, joints);
+  state.Resize(num_envs, joints, phys_size);
   result.reward.assign(num_envs, 0);
   result.success.assign(num_envs, 0);
   result.end.assign(num_envs, EpisodeEnd::kNone);
@@ -70,6 +73,8 @@ int ReorientBatch::num_envs() const { return impl_->num_envs; }
 int ReorientBatch::first_env() const { return impl_->first_env; }
 int ReorientBatch::num_joints() const { return impl_->joints; }
 int ReorientBatch::obs_size() const { return 6 * impl_->joints; }
+int ReorientBatch::phys_size() const { return impl_->phys_size; }
+int ReorientBatch::action_repeat() const { return impl_->options.action_repeat; }
 const std::vector<TaskObject>& ReorientBatch::objects() const { return impl_->objects; }
 const SimState& ReorientBatch::sim_state() const { return impl_->sim->state(); }
 const std::vector<float>& ReorientBatch::obs() const { return impl_->state.obs; }
@@ -106,11 +111,15 @@ const StepResult& ReorientBatch::Step(const std::vector<float>& actions) {
   Impl& m = *impl_;
   DEX_CHECK_EQ(actions.size(), static_cast<std::size_t>(m.num_envs) * m.joints);
   const auto row = [&](int env) { return &actions[static_cast<std::size_t>(env) * m.joints]; };
-  m.ForEachEnv([&](int env) { m.Command(env, row(env)); });
-  const std::vector<std::uint8_t>& live = m.state.live;
-  const bool all = std::all_of(live.begin(), live.end(), [](auto on) { return on != 0; });
-  m.sim->Step(m.state.target, all ? std::span<const std::uint8_t>() : live);
-  m.ForEachEnv([&](int env) { m.Finish(env, row(env)); });
+  m.ForEachEnv([&](int env) { m.Begin(env); });
+  for (int repeat = 0; repeat < m.options.action_repeat; ++repeat) {
+    m.ForEachEnv([&](int env) { m.Command(env, row(env)); });
+    const std::vector<std::uint8_t>& running = m.running;
+    const bool all = std::all_of(running.begin(), running.end(), [](auto on) { return on != 0; });
+    m.sim->Step(m.state.target, all ? std::span<const std::uint8_t>() : running);
+    m.ForEachEnv([&](int env) { m.Advance(env, row(env)); });
+  }
+  m.ForEachEnv([&](int env) { m.Observe(env); });
   m.EndEpisodes();
   return m.result;
 }
@@ -130,7 +139,8 @@ std::vector<std::uint8_t> ReorientBatch::Save() const {
   internal::SaveRecords(impl_->records, out);
   for (int env = 0; env < num_envs(); ++env) {
     const EnvPhysics& p = impl_->physics[env];
-    for (const double number : {p.mass, p.com.x(), p.com.y(), p.com.z(), p.friction, p.scale})
+    for (const double number :
+         {p.mass, p.com.x(), p.com.y(), p.com.z(), p.friction, p.torsional_friction, p.scale})
       out.Put(number);
     out.PutVector(impl_->sim->Save(env));
   }
@@ -148,7 +158,8 @@ void ReorientBatch::Restore(const std::vector<std::uint8_t>& bytes) {
   for (int env = 0; env < num_envs(); ++env) {
     EnvPhysics& p = impl_->physics[env];
     p = {};
-    for (double* number : {&p.mass, &p.com[0], &p.com[1], &p.com[2], &p.friction, &p.scale})
+    for (double* number :
+         {&p.mass, &p.com[0], &p.com[1], &p.com[2], &p.friction, &p.torsional_friction, &p.scale})
       in.GetInto(*number);
     p.gravity = {0, 0, impl_->gravity};
     impl_->sim->Restore(env, in.GetVector<std::uint8_t>());

@@ -18,7 +18,11 @@ namespace dexremoe {
 
 struct TaskOptions {
   // Episode (paper, Table II).
-  int episode_length = 600;     // control steps
+  int episode_length = 600;  // control steps
+  // Control steps without a success after which an episode ends as at the clock; 0: never.
+  // NOTE(paper): not there. For training alone: a jammed object teaches little while the clock runs
+  // out.
+  int goal_timeout = 0;
   double fall_distance = 0.12;  // m from the grasp centre; ends the episode
   std::vector<double> grasp_center = {0.0, 0.064, 0.11};  // m in W
   double scale = 1.0;  // size factor beside the one of scale_mesh
@@ -38,9 +42,16 @@ struct TaskOptions {
   double action_scale = 0.1;  // rad per control step at a = 1
   double ema = 1.0;           // alpha
   double target_leash = 0.3;  // rad, targets stay this close to the joint
+  int action_repeat = 1;      // control steps that an action lasts (one decision)
   // What o_t shows of the last three commands: "action" (the averaged action that was executed) or
   // "target" (the joint targets, scaled like the joints; what the paper's lineage shows).
   std::string observe = "action";
+  // The goal is shown at most this far from the present orientation, on the way to it, rad; pi and
+  // more shows it as it is. NOTE(paper): not there; far goals then look like near ones, which a
+  // small budget learns first.
+  double goal_shown = 3.1416;
+  // What e_phys shows besides the paper's 23 numbers; see PhysSize.
+  std::vector<std::string> extra_inputs;
   // Goals: Haar-uniform, or within goal_angle of the present orientation (a curriculum).
   double goal_angle = 3.1416;     // rad; pi and more means Haar
   double velocity_tolerance = 1;  // factor on speed_max and spin_max (a curriculum)
@@ -48,6 +59,7 @@ struct TaskOptions {
   // drawn from scale_range when the grasp was found.
   std::vector<double> mass_range = {0.06, 0.10};  // kg
   std::vector<double> friction_range = {0.9, 1.1};
+  std::vector<double> torsion_range = {0.0, 0.0};  // m, torsional friction; 0: point contacts
   std::vector<double> scale_range = {1.0, 1.0};
   std::vector<double> com_range = {0.0, 0.0};  // m, offset of the centre of mass, each axis
   void Register(Options& options);             // section "task"
@@ -61,6 +73,14 @@ struct TaskOptions {
 // target, so the missing 4 are taken to be the relative quaternion.
 inline constexpr int kPhysSize = 23;
 
+// Length of a row of e_phys: the paper's 23 numbers, then what options.extra_inputs names, in this
+// order whatever the order there. NOTE(paper): none of these is in the paper.
+//   "goal_vector"   3: rotation vector that turns the object to its goal, rad, W
+//   "joint_speed"   J: joint speeds over the last control step, rad/s
+//   "tip_position"  3 a finger: fingertip frame's origin less the object's position, m, W
+//   "tip_contact"   1 a finger: 1 when its tip touches the object
+int PhysSize(const TaskOptions& options, const HandModel& hand);
+
 enum class EpisodeEnd : std::uint8_t { kNone, kFall, kTimeout };
 
 // What one Step gives, row = environment.
@@ -71,7 +91,7 @@ struct StepResult {
   // Observations of the state before the reset of ended episodes, for the bootstrap at a timeout:
   // rows of environments whose episode ended, in order of environment.
   std::vector<int> ended;
-  std::vector<float> last_obs, last_phys;  // [ended, obs_size], [ended, kPhysSize]
+  std::vector<float> last_obs, last_phys;  // [ended, obs_size], [ended, phys_size]
 };
 
 // Figures of an ended episode.
@@ -104,6 +124,8 @@ class ReorientBatch {
   int num_envs() const;
   int num_joints() const;  // = action size
   int obs_size() const;    // 6 * num_joints (66)
+  int phys_size() const;   // PhysSize
+  int action_repeat() const;
   const std::vector<TaskObject>& objects() const;
   const SimState& sim_state() const;
 
@@ -122,16 +144,17 @@ class ReorientBatch {
   // Starts episode `episode` with object `object` in env (evaluation assigns these itself).
   void Reset(int env, int object, std::uint64_t episode);
 
-  // actions [N, num_joints], clamped to [-1, 1]. Ended episodes are reset (auto_reset) or left
-  // where they are and no longer stepped.
+  // One decision: action_repeat control steps with the same actions [N, num_joints], clamped to
+  // [-1, 1]; rewards are summed. Ended episodes are reset (auto_reset) or left where they are and
+  // no longer stepped.
   const StepResult& Step(const std::vector<float>& actions);
   void set_auto_reset(bool on);
 
   // Observation before the next action, row = environment: o_t and e_phys (paper, section III-B).
   // o_t: joint angles at t-2, t-1, t, each scaled so that its limits are -1 and 1, then the
-  // commands at t-3, t-2, t-1 (see TaskOptions::observe).
+  // commands at t-3, t-2, t-1 (see TaskOptions::observe); t counts decisions.
   const std::vector<float>& obs() const;                   // [N, obs_size]
-  const std::vector<float>& phys() const;                  // [N, kPhysSize]
+  const std::vector<float>& phys() const;                  // [N, phys_size]
   const std::vector<int>& object() const;                  // [N]
   const std::vector<std::array<double, 4>>& goal() const;  // [N] w x y z in W
   // Rotation distance to the goal, rad, and |dp|, m.

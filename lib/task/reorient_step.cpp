@@ -59,7 +59,7 @@ void ReorientBatch::Impl::Reset(int env, int object, std::uint64_t episode) {
   const Grasp& grasp = objects[object].grasps[start.grasp];
   physics[env] = start.physics;
   s.grasp[env] = start.grasp;
-  s.length[env] = s.successes[env] = s.goals[env] = s.held[env] = 0;
+  s.length[env] = s.successes[env] = s.goals[env] = s.held[env] = s.waited[env] = 0;
   s.total_reward[env] = s.total_angle[env] = s.total_distance[env] = 0;
   s.live[env] = 1;
 
@@ -72,6 +72,7 @@ void ReorientBatch::Impl::Reset(int env, int object, std::uint64_t episode) {
   std::copy(grasp.q.begin(), grasp.q.end(), &s.q[row]);
   std::copy(grasp.target.begin(), grasp.target.end(), &s.target[row]);
   std::fill_n(&s.average[row], joints, 0.0);
+  std::fill_n(&s.qd[row], joints, 0.0);
   PutPose(grasp.X_WO, env, s.position, s.rotation);
   const Quaterniond goal =
       internal::DrawEpisodeGoal(options, grasp.X_WO.q, seed, KeyOf(env), s.goals[env]++);
@@ -79,14 +80,24 @@ void ReorientBatch::Impl::Reset(int env, int object, std::uint64_t episode) {
   s.angle[env] = RotationDistance(grasp.X_WO.q, goal);
   s.distance[env] = (grasp.X_WO.p - Vector3d(options.grasp_center.data())).norm();
   internal::StartHistory(options, hand, &s.q[row], CommandShown(env), &s.obs[6 * row]);
-  internal::WritePhys(physics[env], {grasp.X_WO}, goal,
-                      &s.phys[static_cast<std::size_t>(env) * kPhysSize]);
+  WriteRow(env, {grasp.X_WO});
+}
+
+// e_phys of the present state, in which the object moves as `motion` says.
+void ReorientBatch::Impl::WriteRow(int env, const internal::ObjectMotion& motion) {
+  const std::size_t row = static_cast<std::size_t>(env) * joints;
+  const std::uint8_t* touch = &sim->state().tip_contact[env * hand.chains.size()];
+  const Quaterniond q_WG = internal::ShownGoal(options, motion.X_WO.q, GoalAt(state, env));
+  float* const extras = internal::WritePhys(physics[env], motion, q_WG,
+                                            &state.phys[static_cast<std::size_t>(env) * phys_size]);
+  internal::WriteExtras(options, hand, {&state.q[row], &state.qd[row], touch}, motion.X_WO, q_WG,
+                        extras);
 }
 
 // NOTE(paper): says only that a moving average of actions gives joint targets. Here an action moves
 // the previous target, kept near the joint: absolute targets drop the object within 20 steps.
 void ReorientBatch::Impl::Command(int env, const float* action) {
-  if (!state.live[env]) return;
+  if (!running[env]) return;
   const std::size_t row = static_cast<std::size_t>(env) * joints;
   for (int j = 0; j < joints; ++j) {
     double& average = state.average[row + j];
@@ -106,13 +117,14 @@ StepFacts ReorientBatch::Impl::Measure(int env, const float* action) {
   StepFacts facts;
   for (int j = 0; j < joints; ++j) {
     const double q = now.joint_position[row + j];
-    const double speed = std::abs(q - s.q[row + j]) * control_rate;
+    s.qd[row + j] = (q - s.q[row + j]) * control_rate;
+    const double speed = std::abs(s.qd[row + j]);
     facts.max_joint_speed = std::max(facts.max_joint_speed, speed);
     facts.excess_joint_speed += std::max(0.0, speed - options.joint_speed_clip);
     facts.squared_action += Clamp1(action[j]) * Clamp1(action[j]);
     s.q[row + j] = q;
   }
-  internal::ObjectMotion motion;
+  internal::ObjectMotion& motion = motions[env];
   motion.X_WO = {QuaternionAt(now.object_rotation, env), VectorAt(now.object_position, env)};
   motion.v = (motion.X_WO.p - VectorAt(s.position, env)) * control_rate;
   motion.w =
@@ -128,9 +140,6 @@ StepFacts ReorientBatch::Impl::Measure(int env, const float* action) {
   facts.spin = motion.w.norm();
   facts.fall = facts.distance > options.fall_distance;
   JudgeGoal(env, facts);
-  internal::PushHistory(options, hand, &s.q[row], CommandShown(env), &s.obs[6 * row]);
-  internal::WritePhys(physics[env], motion, GoalAt(s, env),
-                      &s.phys[static_cast<std::size_t>(env) * kPhysSize]);
   return facts;
 }
 
@@ -140,8 +149,9 @@ void ReorientBatch::Impl::JudgeGoal(int env, StepFacts& facts) {
   internal::TaskState& s = state;
   s.held[env] = MeetsGoal(options, facts) ? s.held[env] + 1 : 0;
   facts.success = s.held[env] >= options.hold_steps;
+  ++s.waited[env];
   if (!facts.success) return;
-  s.held[env] = 0;
+  s.held[env] = s.waited[env] = 0;
   ++s.successes[env];
   const Quaterniond q_WO = QuaternionAt(s.rotation, env);
   const Quaterniond goal =
@@ -150,24 +160,36 @@ void ReorientBatch::Impl::JudgeGoal(int env, StepFacts& facts) {
   s.angle[env] = RotationDistance(q_WO, goal);
 }
 
-void ReorientBatch::Impl::Finish(int env, const float* action) {
-  internal::TaskState& s = state;
+void ReorientBatch::Impl::Begin(int env) {
+  running[env] = state.live[env];
   result.reward[env] = 0;
   result.success[env] = 0;
   result.end[env] = EpisodeEnd::kNone;
-  if (!s.live[env]) return;
+}
+
+void ReorientBatch::Impl::Advance(int env, const float* action) {
+  internal::TaskState& s = state;
+  if (!running[env]) return;
   const StepFacts facts = Measure(env, action);
   const double reward = Reward(options, facts);
   ++s.length[env];
   s.total_reward[env] += reward;
   s.total_angle[env] += facts.angle;
   s.total_distance[env] += facts.distance;
-  result.reward[env] = static_cast<float>(reward);
-  result.success[env] = facts.success;
+  result.reward[env] += static_cast<float>(reward);
+  result.success[env] |= facts.success;
   if (facts.fall)
     result.end[env] = EpisodeEnd::kFall;
-  else if (s.length[env] >= options.episode_length)
+  else if (s.length[env] >= options.episode_length || Jammed(env))
     result.end[env] = EpisodeEnd::kTimeout;
+  running[env] = result.end[env] == EpisodeEnd::kNone;
+}
+
+void ReorientBatch::Impl::Observe(int env) {
+  if (!state.live[env]) return;
+  const std::size_t row = static_cast<std::size_t>(env) * joints;
+  internal::PushHistory(options, hand, &state.q[row], CommandShown(env), &state.obs[6 * row]);
+  WriteRow(env, motions[env]);
 }
 
 EpisodeRecord ReorientBatch::Impl::RecordOf(int env) const {
@@ -193,10 +215,10 @@ void ReorientBatch::Impl::EndEpisodes() {
     if (result.end[env] == EpisodeEnd::kNone) continue;
     records.push_back(RecordOf(env));
     const auto obs = state.obs.begin() + env * width;
-    const auto phys = state.phys.begin() + static_cast<std::size_t>(env) * kPhysSize;
+    const auto phys = state.phys.begin() + static_cast<std::size_t>(env) * phys_size;
     result.ended.push_back(env);
     result.last_obs.insert(result.last_obs.end(), obs, obs + width);
-    result.last_phys.insert(result.last_phys.end(), phys, phys + kPhysSize);
+    result.last_phys.insert(result.last_phys.end(), phys, phys + phys_size);
     if (auto_reset)
       Reset(env, state.object[env], state.episode[env] + total_envs);
     else

@@ -5,6 +5,10 @@ namespace dexremoe {
 
 void TaskOptions::Register(Options& options) {
   options.Add("task.episode_length", &episode_length, "control steps").Range(1, 1e6);
+  options
+      .Add("task.goal_timeout", &goal_timeout,
+           "control steps without success that end an episode; 0: off")
+      .Range(0, 1e6);
   options.Add("task.fall_distance", &fall_distance, "m from grasp_center; ends the episode")
       .Range(1e-3, 10);
   options.Add("task.grasp_center", &grasp_center, "goal position in W, m: x,y,z");
@@ -31,6 +35,12 @@ void TaskOptions::Register(Options& options) {
   options.Add("task.ema", &ema, "weight of the new action in the moving average").Range(1e-3, 1);
   options.Add("task.target_leash", &target_leash, "largest |target - joint angle|, rad")
       .Range(1e-3, 10);
+  options.Add("task.action_repeat", &action_repeat, "control steps that an action lasts")
+      .Range(1, 60);
+  options.Add("task.goal_shown", &goal_shown, "the goal is shown at most this far away, rad")
+      .Range(1e-3, 10);
+  options.Add("task.extra_inputs", &extra_inputs, "privileged inputs beside the paper's 23")
+      .Choices({"goal_vector", "joint_speed", "tip_position", "tip_contact"});
   options.Add("task.observe", &observe, "what o_t shows of the past commands")
       .Choices({"action", "target"});
   options.Add("task.goal_angle", &goal_angle, "goals within this angle, rad; pi and more: any")
@@ -39,6 +49,8 @@ void TaskOptions::Register(Options& options) {
       .Range(1e-3, 1e6);
   options.Add("task.mass_range", &mass_range, "kg: low,high");
   options.Add("task.friction_range", &friction_range, "hand-object coefficient: low,high");
+  options.Add("task.torsion_range", &torsion_range,
+              "torsional friction, moment about the normal over normal force, m: low,high");
   options.Add("task.scale_range", &scale_range, "size factor of grasp search: low,high");
   options.Add("task.com_range", &com_range, "centre-of-mass offset per axis, m: low,high");
 }
@@ -54,6 +66,7 @@ void TaskOptions::Check() const {
   };
   range("mass_range", mass_range, 1e-6);
   range("friction_range", friction_range, 0);
+  range("torsion_range", torsion_range, 0);
   range("scale_range", scale_range, 1e-3);
   range("com_range", com_range, -1);
 }

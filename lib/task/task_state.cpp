@@ -9,9 +9,9 @@ namespace {
 template <typename State, typename Visit>
 void ForEachArray(State& s, Visit&& visit) {
   visit(s.object), visit(s.grasp), visit(s.length), visit(s.successes), visit(s.goals);
-  visit(s.held), visit(s.episode), visit(s.live);
+  visit(s.held), visit(s.waited), visit(s.episode), visit(s.live);
   visit(s.total_reward), visit(s.total_angle), visit(s.total_distance);
-  visit(s.average), visit(s.target), visit(s.q), visit(s.position), visit(s.rotation);
+  visit(s.average), visit(s.target), visit(s.q), visit(s.qd), visit(s.position), visit(s.rotation);
   visit(s.goal), visit(s.angle), visit(s.distance), visit(s.obs), visit(s.phys);
 }
 
@@ -20,7 +20,7 @@ template <typename Opts, typename Number, typename List>
 void ForEachOption(Opts& o, Number&& number, List&& list) {
   number(o.tolerance), number(o.goal_angle), number(o.velocity_tolerance), number(o.hold_steps);
   number(o.c_progress), number(o.c_fall);
-  list(o.mass_range), list(o.friction_range), list(o.com_range);
+  list(o.mass_range), list(o.friction_range), list(o.torsion_range), list(o.com_range);
 }
 
 template <typename Record, typename Visit>
@@ -31,19 +31,20 @@ void ForEachField(Record& r, Visit&& visit) {
 
 }  // namespace
 
-void TaskState::Resize(int num_envs, int joints) {
+void TaskState::Resize(int num_envs, int joints, int phys_size) {
   const std::size_t n = num_envs, j = joints;
-  for (auto* counts : {&object, &grasp, &length, &successes, &goals, &held}) counts->assign(n, 0);
+  for (auto* counts : {&object, &grasp, &length, &successes, &goals, &held, &waited})
+    counts->assign(n, 0);
   episode.assign(n, 0);
   live.assign(n, 1);
   for (auto* sums : {&total_reward, &total_angle, &total_distance, &angle, &distance})
     sums->assign(n, 0.0);
-  for (auto* rows : {&average, &target, &q}) rows->assign(n * j, 0.0);
+  for (auto* rows : {&average, &target, &q, &qd}) rows->assign(n * j, 0.0);
   position.assign(n * 3, 0.0);
   rotation.assign(n * 4, 0.0);
   goal.assign(n, {1, 0, 0, 0});
   obs.assign(n * 6 * j, 0.0f);
-  phys.assign(n * kPhysSize, 0.0f);
+  phys.assign(n * phys_size, 0.0f);
 }
 
 void TaskState::Save(ByteWriter& out) const {

@@ -19,26 +19,27 @@ namespace dexremoe::internal {
 // | length, successes | [N]    | 1       | of the episode so far                                |
 // | goals             | [N]    | 1       | goals drawn so far                                   |
 // | held              | [N]    | 1       | control steps in a row that met the goal             |
+// | waited            | [N]    | 1       | control steps since the last success or the start    |
 // | total_reward ...  | [N]    |         | sums over the episode's steps                        |
 // | average           | [N,J]  | 1       | moving average of actions                            |
 // | target            | [N,J]  | rad     | servo targets                                        |
-// | q                 | [N,J]  | rad     | joint angles at the last control step                |
-// | position          | [N,3]  | m, W    | object at the last control step                      |
-// | rotation          | [N,4]  | w x y z | object at the last control step                      |
-// | goal              | [N,4]  | w x y z | q_WG                                                 |
-// | angle, distance   | [N]    | rad, m  | to the goal, from the grasp centre                   |
-// | obs, phys         | [N,..] |         | observations; obs rows are the history themselves    |
+// | q, qd             | [N,J]  | rad(/s) | joints at the last control step; qd is the step's
+// difference | | position          | [N,3]  | m, W    | object at the last control step | |
+// rotation          | [N,4]  | w x y z | object at the last control step                      | |
+// goal              | [N,4]  | w x y z | q_WG                                                 | |
+// angle, distance   | [N]    | rad, m  | to the goal, from the grasp centre                   | |
+// obs, phys         | [N,..] |         | observations; obs rows are the history themselves    |
 struct TaskState {
-  std::vector<std::int32_t> object, grasp, length, successes, goals, held;
+  std::vector<std::int32_t> object, grasp, length, successes, goals, held, waited;
   std::vector<std::uint64_t> episode;
   std::vector<std::uint8_t> live;
   std::vector<double> total_reward, total_angle, total_distance;
-  std::vector<double> average, target, q, position, rotation;
+  std::vector<double> average, target, q, qd, position, rotation;
   std::vector<std::array<double, 4>> goal;
   std::vector<double> angle, distance;
   std::vector<float> obs, phys;
 
-  void Resize(int num_envs, int joints);
+  void Resize(int num_envs, int joints, int phys_size);
   void Save(ByteWriter& out) const;
   // Throws Error when the image does not fit the sizes set by Resize.
   void Restore(ByteReader& in);

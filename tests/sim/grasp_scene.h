@@ -12,8 +12,10 @@ namespace dexremoe::scenes {
 inline const Eigen::Vector3d kGraspCenter(0.0, 0.056, 0.122);  // 11 cm off the palm; m, W
 
 struct GraspScene {
-  GraspScene(const SimOptions& options, int num_envs, int workers, std::uint64_t seed = 7)
+  GraspScene(const SimOptions& options, int num_envs, int workers,
+             const EnvPhysics& physics_of_all = {}, std::uint64_t seed = 7)
       : hand(LoadHand(HandOptions())),
+        physics(physics_of_all),
         rig(options, hand, {Cube()}, num_envs, workers),
         targets(num_envs * hand.num_joints()),
         squeeze(num_envs) {
@@ -36,7 +38,7 @@ struct GraspScene {
     squeeze[env] = rng.Uniform(0.08, 0.2);
     const auto q = rng.UnitQuaternion();
     state.X_WO.q = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-    rig->SetObject(env, 0, EnvPhysics());
+    rig->SetObject(env, 0, physics);
     rig->SetState(env, state);
     rig->SetHeld(env, true);
   }
@@ -82,6 +84,7 @@ struct GraspScene {
   }
 
   HandModel hand;
+  EnvPhysics physics;  // of what Start places
   Rig rig;
   std::vector<double> targets;  // [N,J] rad
   std::vector<double> squeeze;  // [N] rad

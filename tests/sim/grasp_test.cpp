@@ -21,6 +21,13 @@ double CpuSeconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+// Friction of every kind.
+EnvPhysics SoftFingers() {
+  EnvPhysics physics;
+  physics.torsional_friction = 0.004;
+  return physics;
+}
+
 class Grasp : public scenes::OnEveryEngine {};
 DEX_RUN_ON_EVERY_ENGINE(Grasp);
 class Batch : public scenes::OnEveryEngine {};
@@ -54,7 +61,7 @@ TEST_P(Grasp, MostClosedGraspsHoldTheCubeForASecond) {
 TEST_P(Batch, ResultsAreEqualBitForBitForAnyNumberOfWorkers) {
   std::vector<double> expected;
   for (const int workers : {1, 2, 4}) {
-    GraspScene scene(Options(), 9, workers);
+    GraspScene scene(Options(), 9, workers, SoftFingers());
     scene.Close(40);
     scene.Release();
     for (int step = 0; step < 20; ++step) scene.StepRandomly(step);
@@ -69,7 +76,7 @@ TEST_P(Batch, ResultsAreEqualBitForBitForAnyNumberOfWorkers) {
 }
 
 TEST_P(Batch, AnEnvironmentDoesNotDependOnItsIndexOrItsNeighbours) {
-  GraspScene alone(Options(), 1, 1), crowd(Options(), 70, 2);
+  GraspScene alone(Options(), 1, 1, SoftFingers()), crowd(Options(), 70, 2, SoftFingers());
   crowd.Start(69, 0, 7);  // the very start of alone's environment 0, in a shared chunk
   for (GraspScene* scene : {&alone, &crowd}) {
     scene->Close(45);
@@ -80,7 +87,7 @@ TEST_P(Batch, AnEnvironmentDoesNotDependOnItsIndexOrItsNeighbours) {
 }
 
 TEST_P(Batch, ARestoredEnvironmentContinuesBitForBit) {
-  GraspScene scene(Options(), 2, 1), other(Options(), 2, 1);
+  GraspScene scene(Options(), 2, 1, SoftFingers()), other(Options(), 2, 1);
   scene.Close(45);
   scene.Release();
   for (int step = 0; step < 5; ++step) scene.StepRandomly(step);

@@ -193,13 +193,13 @@ TEST(Mujoco, TheObjectHasItsMassInertiaSizeAndCentreOfMass) {
 
 TEST(Mujoco, EnvironmentsWithEqualParametersShareAModel) {
   MujocoScene scene(Options(2), scenes::PalmOnly(), {scenes::Cube(), scenes::Cube(0.04)});
-  EnvPhysics physics, heavier, turned;
-  heavier.mass *= 2;
+  EnvPhysics physics, heavier = {.mass = 0.2}, softer = {.torsional_friction = 0.004}, turned;
   turned.gravity = {0, 9.81, 0};  // not part of the model
   const auto model = scene.ModelFor(0, physics);
   EXPECT_EQ(scene.ModelFor(0, physics), model);
   EXPECT_EQ(scene.ModelFor(0, turned), model);
   EXPECT_NE(scene.ModelFor(0, heavier), model);
+  EXPECT_NE(scene.ModelFor(0, softer), model);
   EXPECT_NE(scene.ModelFor(1, physics), model);
 }
 
@@ -269,10 +269,11 @@ TEST(Mujoco, ItsErrorsAreExceptionsAndItsWarningsLeaveNoLogFile) {
 
 TEST(Mujoco, ParametersThatAreNoPhysicsAreRefused) {
   Rig rig(Options(2), scenes::PalmOnly(), {scenes::Cube()});
-  for (int wrong = 0; wrong < 3; ++wrong) {
+  for (double EnvPhysics::*field : {&EnvPhysics::mass, &EnvPhysics::scale, &EnvPhysics::friction,
+                                    &EnvPhysics::torsional_friction}) {
     EnvPhysics physics;
-    (wrong == 0 ? physics.mass : wrong == 1 ? physics.scale : physics.friction) = -1;
-    EXPECT_THROW(rig->SetObject(0, 0, physics), Error) << wrong;
+    physics.*field = -1;
+    EXPECT_THROW(rig->SetObject(0, 0, physics), Error);
   }
 }
 

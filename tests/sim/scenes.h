@@ -24,6 +24,7 @@ struct Engine {
   // Height of a resting body over the surface below it.
   double rest_gap = 0, rest_gap_error = 0;  // m
   double slip_angle = 0;                    // largest error against atan mu; degrees
+  double spin_creep = 0;                    // of a torque below the torsional bound; rad in 1 s
   double impact_depth = 0;                  // deepest overlap of a cube that fell 12 cm; m
   double stop_time = 0;  // s; a joint runs into its stop as far as its speed takes it in this time
 };
@@ -44,6 +45,7 @@ inline std::vector<Engine> Engines() {
   ode.rest_gap = 1e-4;
   ode.rest_gap_error = 2e-5;
   ode.slip_angle = 0.5;
+  ode.spin_creep = 0.01;
   ode.impact_depth = 2e-3;
   ode.stop_time = 1.0 / 240;  // a substep of four
 
@@ -61,6 +63,7 @@ inline std::vector<Engine> Engines() {
   lanes.rest_gap_error = 1e-4;
   // Normals come from the gradient of a sampled distance field.
   lanes.slip_angle = 2;
+  lanes.spin_creep = 0.01;
   lanes.impact_depth = 2e-3;
   lanes.stop_time = 1.0 / 240;
 
@@ -76,6 +79,7 @@ inline std::vector<Engine> Engines() {
   mujoco.rest_gap = -2e-5;
   mujoco.rest_gap_error = 2e-5;
   mujoco.slip_angle = 0.3;
+  mujoco.spin_creep = 0.05;
   mujoco.impact_depth = 3e-3;
   mujoco.stop_time = 2e-3;
   return {ode, lanes, mujoco};

@@ -264,13 +264,18 @@ TEST(Episode, StartsDifferBetweenEpisodesObjectsAndSeeds) {
 TEST(Episode, PhysicalDrawsFillTheirRanges) {
   TaskOptions options;
   options.mass_range = {0.03, 0.18};
+  options.torsion_range = {0.002, 0.004};
   FakeTask task(options, 400);
-  double low = 1, high = 0;
+  double low = 1, high = 0, torsion = 0;
   for (const EnvPhysics& p : task.sim->physics) {
     low = std::min(low, p.mass);
     high = std::max(high, p.mass);
     EXPECT_EQ(p.gravity, Vector3d(0, 0, 9.81));
+    EXPECT_GE(p.torsional_friction, 0.002);
+    EXPECT_LE(p.torsional_friction, 0.004);
+    torsion += p.torsional_friction / 400;
   }
+  EXPECT_NEAR(torsion, 0.003, 1e-4);
   EXPECT_GE(low, 0.03);
   EXPECT_LT(low, 0.033);
   EXPECT_LE(high, 0.18);
@@ -292,6 +297,9 @@ TEST(Batch, RefusesGraspsOfAnotherHandOrSize) {
   EXPECT_THROW(FakeTask{options}, Error);
   options = {};
   options.mass_range = {2, 1};
+  EXPECT_THROW(FakeTask{options}, UsageError);
+  options = {};
+  options.torsion_range = {-0.001, 0.004};
   EXPECT_THROW(FakeTask{options}, UsageError);
 }
 

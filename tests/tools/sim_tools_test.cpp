@@ -1,4 +1,4 @@
-// bench_sim and validate_sim from the command line.
+// bench_sim, bench_learn and validate_sim from the command line.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -45,6 +45,13 @@ TEST_F(SimTools, BenchSimWritesWhatItPrints) {
   ASSERT_EQ(Run("bench_sim --quick --out=" + Path("a.md") + " --csv=" + Path("a.csv"), "a"), 0);
   EXPECT_EQ(Slurp("a.md"), Slurp("a.txt"));
   EXPECT_THAT(Slurp("a.md"), HasSubstr("| ode 2"));
+  EXPECT_THAT(Slurp("a.csv"), StartsWith("table,row,column,value,spread\nrate,"));
+}
+
+TEST_F(SimTools, BenchLearnWritesWhatItPrints) {
+  ASSERT_EQ(Run("bench_learn --quick --out=" + Path("a.md") + " --csv=" + Path("a.csv"), "a"), 0);
+  EXPECT_EQ(Slurp("a.md"), Slurp("a.txt"));
+  EXPECT_THAT(Slurp("a.md"), HasSubstr("| 128 x 2"));
   EXPECT_THAT(Slurp("a.csv"), StartsWith("table,row,column,value,spread\nrate,"));
 }
 

@@ -25,6 +25,7 @@ BlockLayout::BlockLayout(int joints_, int chains_, int cores) : joints(joints_),
   root_mass = take(1);
   root_inertia = take(3);
   friction = take(1);
+  torsion = take(1);
   gravity = take(3);
   kp = take(1);
   kd = take(1);

@@ -19,7 +19,8 @@ inline constexpr int kMaxChainJoints = 6;
 // costs 7 % of the speed; on the palm an object may lie on its four corners.
 inline constexpr int kFingerSlots = 3;
 inline constexpr int kSlots = 4;
-inline constexpr int kContactRows = 5;  // key, normal impulse, friction impulse (3, W)
+inline constexpr int kContactRows =
+    6;  // key, normal impulse, friction impulse (3, W), spin impulse
 
 // First row of each quantity. J joints, C chains (fingers).
 // | quantity     | rows          | unit            | written by        |
@@ -30,7 +31,7 @@ inline constexpr int kContactRows = 5;  // key, normal impulse, friction impulse
 // | v, w         | 3 each        | m/s, rad/s; W   | SetState, kernel  |
 // | push         | 3             | N, W            | PushObject; cleared by the kernel |
 // | free         | 1             | 0 while held, else 1 | SetHeld      |
-// | contacts     | (C+1)*kSlots*kContactRows | N s | kernel: last substep |
+// | contacts     | (C+1)*kSlots*kContactRows | N s, N m s | kernel: last substep |
 // | inset        | 2 * cores     | m: how far inside its end a core's contact was | kernel |
 // | touch        | C             | 1: a tip carries force | kernel     |
 // | points       | 1             | contact points that carry force | kernel |
@@ -39,6 +40,7 @@ inline constexpr int kContactRows = 5;  // key, normal impulse, friction impulse
 // | root_mass    | 1             | sqrt(kg)        |
 // | root_inertia | 3             | m sqrt(kg): roots of the principal moments |
 // | friction     | 1             | 1               |
+// | torsion      | 1             | m: torsional friction |
 // | gravity      | 3             | m/s^2, W        |
 // | kp, kd       | 1 each        | N m/rad, N m s/rad |
 // | com          | 3             | m: the centre of mass in B |
@@ -55,8 +57,8 @@ struct BlockLayout {
 
   int joints = 0, chains = 0;
   int q, qd, target, x, quat, v, w, push, free, contacts, inset, touch, points, depth;
-  int root_mass, root_inertia, friction, gravity, kp, kd, com, reach, box, field, field_scale,
-      field_shift, field_unit;
+  int root_mass, root_inertia, friction, torsion, gravity, kp, kd, com, reach, box, field,
+      field_scale, field_shift, field_unit;
   int rows = 0;
 
   int Contact(int group, int slot) const {

@@ -167,6 +167,15 @@ HWY_INLINE void Whiten(const F* a, const F* qd, F* inverse, F* u) {
   }
 }
 
+// L^-1 j: a row of a chain's Jacobian in whitened velocities.
+template <int N>
+HWY_INLINE void WhitenedRow(const F* inverse, const F* j, F* row) {
+  for (int i = 0; i < N; ++i) {
+    row[i] = F(0.0f);
+    for (int n = 0; n <= i; ++n) row[i] += inverse[Packed(i, n)] * j[n];
+  }
+}
+
 // Joint velocity i of a chain: row i of L^-T u.
 template <int N>
 HWY_INLINE F JointSpeed(const F* inverse, const F* u, int i) {

@@ -8,6 +8,7 @@
 #endif
 
 #include "sim/lanes/lane_self_contacts-inl.h"
+#include "sim/lanes/lane_spin-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace dexremoe {
@@ -43,6 +44,7 @@ struct ContactRows {
   F normal, lean[2], stick[3], slip;
   F gap, ask;    // m; -SeparationSpeed
   F impulse[3];  // N s
+  SpinRow spin;  // set up for soft fingers only
 };
 
 // Two unit vectors that complete n to a right-handed frame (Duff et al., "Building an Orthonormal
@@ -63,10 +65,7 @@ HWY_INLINE void ChainRow(const HandState& hand, int first, const F* inverse, con
     const V3 lever = Cross(hand.R[first + i].z, point - hand.origin[first + i]);
     j[i] = OrZero(link >= F(static_cast<float>(i)), Dot(direction, lever));
   }
-  for (int i = 0; i < N; ++i) {
-    row[i] = F(0.0f);
-    for (int n = 0; n <= i; ++n) row[i] += inverse[Packed(i, n)] * j[n];
-  }
+  WhitenedRow<N>(inverse, j, row);
 }
 
 template <int N>
@@ -80,22 +79,24 @@ HWY_INLINE F RowProduct(const ContactRows& rows, int a, int b) {
 HWY_INLINE void Inherit(const BlockLayout& at, const float* block, int group, F key, M here,
                         ContactRows& rows) {
   V3 friction = {F(0.0f), F(0.0f), F(0.0f)};
-  F normal(0.0f);
+  F normal(0.0f), spin(0.0f);
   for (int k = 0; k < kSlots; ++k) {
     const float* old = block + at.Contact(group, k) * kBlockLanes;
     const M same = And(here, Load(old) == key);
     if (!Any(same)) continue;
     normal = Select(same, Load(old + kBlockLanes), normal);
     friction = Select(same, LoadV3(old + 2 * kBlockLanes), friction);
+    spin = Select(same, Load(old + 5 * kBlockLanes), spin);
   }
   rows.impulse[0] = normal;
   rows.impulse[1] = Dot(friction, rows.tangent[0]);
   rows.impulse[2] = Dot(friction, rows.tangent[1]);
+  rows.spin.impulse = spin;
 }
 
 template <int N>
 HWY_NOINLINE void SetUpContact(int group, int first, const Contacts& found, int k,
-                               const HandState& hand, const ObjectState& object,
+                               const HandState& hand, const ObjectState& object, bool soft,
                                ContactRows& rows) {
   const V3& point = found.point[k];
   const M here = found.count > F(static_cast<float>(k));
@@ -123,6 +124,7 @@ HWY_NOINLINE void SetUpContact(int group, int first, const Contacts& found, int 
   const F mean = F(0.5f) * (t11 + t22), half = F(0.5f) * (t11 - t22);
   rows.slip = OrZero(moves, RoughReciprocal(mean + Sqrt(half * half + t12 * t12)));
   rows.gap = found.gap[k];
+  if (soft) SetUpSpin<N>(group, first, found, k, hand, object, rows.spin);
 }
 
 // What a contact acts on: one chain's whitened velocity and the object's. Copied out of the state
@@ -153,6 +155,15 @@ struct Velocity {
     b = b + ang.y * ws.y + ang.z * ws.z;
     return a + b;
   }
+  HWY_INLINE void Add(const SpinRow& row, F impulse) {
+    for (int i = 0; i < N; ++i) u[i] += row.hand[i] * impulse;
+    ws = ws + row.object * impulse;
+  }
+  HWY_INLINE F Along(const SpinRow& row) const {
+    F sum = Dot(row.object, ws);
+    for (int i = 0; i < N; ++i) sum += row.hand[i] * u[i];
+    return sum;
+  }
 };
 
 // The normal impulse first, the tangential ones with it known. They stop the point if the cone has
@@ -177,6 +188,14 @@ HWY_INLINE void SolveContact(ContactRows& rows, F friction, Velocity<N>& velocit
   rows.impulse[0] = normal;
   rows.impulse[1] = t1;
   rows.impulse[2] = t2;
+}
+
+// Stops the spin at a contact, as far as a moment impulse of at most `most` can.
+template <int N>
+HWY_INLINE void SolveSpin(SpinRow& row, F most, Velocity<N>& velocity) {
+  const F impulse = Clamp(row.impulse - row.inverse * velocity.Along(row), -most, most);
+  velocity.Add(row, impulse - row.impulse);
+  row.impulse = impulse;
 }
 
 // Corrections of the servos' impulses so that torque and angle keep their limits. `spent` holds

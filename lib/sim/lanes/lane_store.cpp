@@ -60,6 +60,7 @@ void LaneStore::PutObject(int slot, int index, const EnvPhysics& physics) {
   PutVector(slot, at.root_inertia,
             physics.scale * (physics.mass * object.unit_inertia).cwiseSqrt());
   At(slot, at.friction) = static_cast<float>(physics.friction);
+  At(slot, at.torsion) = static_cast<float>(physics.torsional_friction);
   PutVector(slot, at.gravity, physics.gravity);
   At(slot, at.kp) = static_cast<float>(model_.kp * physics.kp_factor);
   At(slot, at.kd) = static_cast<float>(model_.kd * physics.kd_factor);

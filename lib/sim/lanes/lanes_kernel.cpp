@@ -24,6 +24,8 @@ constexpr int kGroups = kMaxChains + 1;
 struct Substep {
   HandState hand;
   ObjectState object;
+  F friction, torsion;      // 1, m
+  bool soft;                // some lane has torsional friction
   Contacts found[kGroups];  // of each chain, then of the palm
   int used[kGroups];        // slots that any lane uses
   ContactRows rows[kGroups][kSlots];
@@ -106,7 +108,7 @@ HWY_NOINLINE void SetUp(const LanesModel& model, float* block, Substep& s) {
     for (int k = 0; k < s.used[g]; ++k) {
       WithSize(size, [&](auto n) HWY_ATTR {
         SetUpContact<decltype(n)::value>(palm ? 0 : g, first, s.found[g], k, s.hand, s.object,
-                                         s.rows[g][k]);
+                                         s.soft, s.rows[g][k]);
       });
       Inherit(at, block, g, s.found[g].key[k], s.found[g].count > F(static_cast<float>(k)),
               s.rows[g][k]);
@@ -141,6 +143,7 @@ HWY_INLINE void Drive(const LanesModel& model, F h, F rate, Substep& s) {
   ForEachContact(model, s, [&](ContactRows& rows, auto& velocity) HWY_ATTR {
     rows.ask = SeparationSpeed(rows.gap, rate);
     for (int r = 0; r < 3; ++r) velocity.Add(rows, r, rows.impulse[r]);
+    if (s.soft) velocity.Add(rows.spin, rows.spin.impulse);
   });
   for (int k = 0; k < s.self_count; ++k) {
     s.self[k].ask = SeparationSpeed(s.self[k].gap, rate);
@@ -149,23 +152,23 @@ HWY_INLINE void Drive(const LanesModel& model, F h, F rate, Substep& s) {
 }
 
 // One round of Gauss-Seidel. `spent` holds the limits' corrections so far (see LimitJoints).
-HWY_INLINE void Sweep(const LanesModel& model, F friction, F h, F* spent, Substep& s) {
+HWY_INLINE void Sweep(const LanesModel& model, F h, F* spent, Substep& s) {
   for (int c = 0; c < static_cast<int>(model.chains.size()); ++c)
     WithSize(model.chains[c].size,
              [&](auto n) HWY_ATTR { LimitJoints<decltype(n)::value>(model, c, h, s.hand, spent); });
   for (int k = 0; k < s.self_count; ++k) SolveSelf(s.self[k], s.hand.u);
   ForEachContact(model, s, [&](ContactRows& rows, auto& velocity) HWY_ATTR {
-    SolveContact(rows, friction, velocity);
+    SolveContact(rows, s.friction, velocity);
+    if (s.soft) SolveSpin(rows.spin, s.torsion * rows.impulse[0], velocity);
   });
 }
 
 // One time step with the contacts' directions as they were found; gaps follow the normal speed.
-HWY_NOINLINE void Advance(const LanesModel& model, float* block, F friction, F h, F rate,
-                          Substep& s) {
+HWY_NOINLINE void Advance(const LanesModel& model, float* block, F h, F rate, Substep& s) {
   F spent[kMaxJoints];
   for (int j = 0; j < model.layout.joints; ++j) spent[j] = F(0.0f);
   Drive(model, h, rate, s);
-  for (int k = 0; k < model.iterations; ++k) Sweep(model, friction, h, spent, s);
+  for (int k = 0; k < model.iterations; ++k) Sweep(model, h, spent, s);
   for (int c = 0; c < model.layout.chains; ++c)
     WithSize(model.chains[c].size,
              [&](auto n) HWY_ATTR { FinishChain<decltype(n)::value>(model, c, h, s.hand); });
@@ -196,7 +199,7 @@ HWY_NOINLINE void Finish(const LanesModel& model, float* block, F rate, Substep&
     F touch(0.0f);
     for (int k = 0; k < kSlots; ++k) {
       float* row = Row(block, at.Contact(g, k));
-      F normal(0.0f);
+      F normal(0.0f), spin(0.0f);
       V3 friction = {F(0.0f), F(0.0f), F(0.0f)};
       if (k < s.used[g]) {
         const ContactRows& rows = s.rows[g][k];
@@ -204,6 +207,7 @@ HWY_NOINLINE void Finish(const LanesModel& model, float* block, F rate, Substep&
         normal = OrZero(here, rows.impulse[0]);
         friction =
             OrZero(here, rows.tangent[0] * rows.impulse[1] + rows.tangent[1] * rows.impulse[2]);
+        if (s.soft) spin = OrZero(here, rows.spin.impulse);
         const M pressed = normal * rate > F(kNoForce);
         points += OrZero(pressed, F(1.0f));
         touch = Max(touch, OrZero(pressed, s.found[g].tip[k]));
@@ -212,6 +216,7 @@ HWY_NOINLINE void Finish(const LanesModel& model, float* block, F rate, Substep&
       Store(k < s.found[g].slots ? s.found[g].key[k] : F(-1.0f), row);
       Store(normal, row + kBlockLanes);
       StoreV3(friction, row + 2 * kBlockLanes);
+      Store(spin, row + 5 * kBlockLanes);
     }
     if (g < at.chains) Store(touch, Row(block, at.touch + g));
   }
@@ -233,8 +238,11 @@ HWY_INLINE void CountSlots(const LanesModel& model, const Substep& s, KernelCoun
 HWY_INLINE void StepLanes(const LanesModel& model, float* block, KernelCounts* counts) {
   const BlockLayout& at = model.layout;
   const float step = model.substep / static_cast<float>(model.inner_steps);
-  const F h(step), rate(1 / step), friction = Load(Row(block, at.friction));
+  const F h(step), rate(1 / step);
   Substep s;
+  s.friction = Load(Row(block, at.friction));
+  s.torsion = Load(Row(block, at.torsion));
+  s.soft = Any(s.torsion > F(0.0f));
   LoadHand(model, block, s.hand);
   Clock clock(counts);
   for (int i = 0; i < model.substeps; ++i) {
@@ -245,7 +253,7 @@ HWY_INLINE void StepLanes(const LanesModel& model, float* block, KernelCounts* c
     SetUp(model, block, s);
     CountSlots(model, s, counts);
     clock.Count(kSetUpPhase);
-    for (int k = 0; k < model.inner_steps; ++k) Advance(model, block, friction, h, rate, s);
+    for (int k = 0; k < model.inner_steps; ++k) Advance(model, block, h, rate, s);
     clock.Count(kSolvePhase);
     Finish(model, block, rate, s);
     clock.Count(kFinishPhase);
@@ -266,14 +274,6 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace dexremoe {
-
-void KernelCounts::Add(const KernelCounts& other) {
-  for (int phase = 0; phase < kPhases; ++phase) ticks[phase] += other.ticks[phase];
-  substeps += other.substeps;
-  slots += other.slots;
-  points += other.points;
-  lanes += other.lanes;
-}
 
 std::vector<LanesKernel> LanesKernels() {
   const std::int64_t supported = hwy::SupportedTargets();

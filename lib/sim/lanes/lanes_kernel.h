@@ -20,7 +20,13 @@ struct KernelCounts {
   std::uint64_t points = 0;                    // contact points in them, over the lanes
   std::uint64_t lanes = 0;                     // lanes of those slots, busy or not
 
-  void Add(const KernelCounts& other);
+  void Add(const KernelCounts& other) {
+    for (int phase = 0; phase < kPhases; ++phase) ticks[phase] += other.ticks[phase];
+    substeps += other.substeps;
+    slots += other.slots;
+    points += other.points;
+    lanes += other.lanes;
+  }
 };
 
 // Advances all lanes of a block by one control step. block: [layout.rows][kBlockLanes], aligned to

@@ -18,7 +18,7 @@ constexpr char kHeader[] = R"(<mujoco>
 <compiler angle="radian" inertiafromgeom="false"/>
 <option timestep="{:.17g}" gravity="0 0 0" integrator="Euler" cone="elliptic" impratio="10"
  solver="Newton" iterations="50" tolerance="1e-10"><flag multiccd="enable"/></option>
-<size nconmax="160" njmax="512"/>
+<size nconmax="160" njmax="768"/>
 <default>
 <geom condim="3" friction="0 0 0" solref="0.006 1" solimp="0.95 0.99 0.0005"/>
 <joint type="hinge" limited="true" solreflimit="0.002 1" solimplimit="0.99 0.999 0.0005"/>

@@ -65,6 +65,8 @@ void CheckPhysics(const EnvPhysics& physics, const std::string& what) {
   if (!(physics.scale > 0)) Fail("{}: scale: expected > 0, found {}", what, physics.scale);
   if (!(physics.friction >= 0))
     Fail("{}: friction: expected >= 0, found {}", what, physics.friction);
+  if (!(physics.torsional_friction >= 0))
+    Fail("{}: torsional friction: expected >= 0 m, found {}", what, physics.torsional_friction);
 }
 
 // Scales a mesh geom of the object about O and moves it from O to the centre of mass.
@@ -116,7 +118,8 @@ std::shared_ptr<const mjModel> MujocoScene::ModelFor(int object, const EnvPhysic
                    physics.com.y(),
                    physics.com.z(),
                    physics.scale,
-                   physics.friction};
+                   physics.friction,
+                   physics.torsional_friction};
   if (const auto found = variants_.find(key); found != variants_.end())
     if (auto model = found->second.lock()) return model;
   if (variants_.size() >= prune_at_) {
@@ -139,6 +142,9 @@ MujocoModel MujocoScene::Variant(int object, const EnvPhysics& physics) const {
     const int geom = model->body_geomadr[body] + i;
     // The larger coefficient of the two geoms counts; the hand's is zero.
     model->geom_friction[3 * geom] = physics.friction;
+    model->geom_friction[3 * geom + 1] = physics.torsional_friction;
+    // Of the number of rows too; MuJoCo would raise a coefficient of zero.
+    if (physics.torsional_friction > 0) model->geom_condim[geom] = 4;
     PlaceGeom(*model, geom, physics.scale, physics.com);
   }
   const MujocoData data(mj_makeData(model.get()));

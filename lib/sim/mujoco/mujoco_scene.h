@@ -39,13 +39,13 @@ class MujocoScene {
     return geom < static_cast<int>(collider_.size()) ? collider_[geom] : -1;
   }
 
-  // The model of `object` with mass, centre of mass, friction and scale of `physics` (gravity and
-  // servo gains are not part of it). Environments with equal parameters share one. Throws Error
-  // when the mass or the scale is not positive or the friction negative. Not thread-safe.
+  // The model of `object` with mass, centre of mass, both frictions and scale of `physics` (gravity
+  // and servo gains are not part of it). Environments with equal parameters share one. Throws Error
+  // when the mass or the scale is not positive or a friction negative. Not thread-safe.
   std::shared_ptr<const mjModel> ModelFor(int object, const EnvPhysics& physics);
 
  private:
-  using Key = std::array<double, 7>;
+  using Key = std::array<double, 8>;
   MujocoModel Compile(const SimObject& object) const;
   MujocoModel Variant(int object, const EnvPhysics& physics) const;
 

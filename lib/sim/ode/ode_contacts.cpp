@@ -24,6 +24,7 @@ constexpr double kMaxCorrection = 1.0;  // m/s
 // 1e-6 m/s for each N.
 constexpr double kContactCfm = 1e-5;
 constexpr double kFrictionCfm = 1e-6;
+constexpr double kSpinCfm = 1e-2;  // (rad/s) / (N m)
 // A point inherits the force of an old one this near on the same collider.
 constexpr double kSameContact = 8e-3;  // m
 // What forces may close beyond the present speed: 14 m/s^2 over a step of 1/120 s. With less,
@@ -162,6 +163,23 @@ void OdeEnv::SetFriction(const ActiveContact& contact, dContact& joint) const {
   for (int k = 0; k < 3; ++k) joint.fdir1[k] = along[k];
 }
 
+// Soft fingers: a motor that stops the object's spin about the normal, as far as the normal force
+// of the substep before allows; a new contact has none yet. (ODE's own rolling friction
+// brings rows for both tangents too, and no softness, which the parallel rows of a face need.)
+void OdeEnv::ResistSpin(const ActiveContact& contact) {
+  const double most = physics_.torsional_friction * contact.inherited.normal;
+  if (!(most > 0)) return;
+  const Vector3d& normal = contact.point.normal;
+  const dJointID motor = dJointCreateAMotor(world_, arena_.contact_joints());
+  dJointAttach(motor, held_ ? nullptr : object_body_, BodyOf(contact.point.collider));
+  dJointSetAMotorMode(motor, dAMotorUser);
+  dJointSetAMotorNumAxes(motor, 1);
+  dJointSetAMotorAxis(motor, 0, 0, normal.x(), normal.y(), normal.z());
+  dJointSetAMotorParam(motor, dParamVel, 0);
+  dJointSetAMotorParam(motor, dParamFMax, most);
+  dJointSetAMotorParam(motor, dParamCFM, kSpinCfm);
+}
+
 void OdeEnv::CreateObjectContact(ActiveContact& contact, double h) {
   const dBodyID tail = BodyOf(contact.point.collider);
   contact.feedback = {};
@@ -171,6 +189,7 @@ void OdeEnv::CreateObjectContact(ActiveContact& contact, double h) {
   const dJointID id = dJointCreateContact(world_, arena_.contact_joints(), &joint);
   dJointAttach(id, held_ ? nullptr : object_body_, tail);
   dJointSetFeedback(id, &contact.feedback);
+  ResistSpin(contact);
 }
 
 // Fingers only keep apart from each other: one row a point, no friction.

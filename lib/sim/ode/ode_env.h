@@ -80,6 +80,7 @@ class OdeEnv {
   Eigen::Vector3d SlipVelocity(const ContactPoint& point) const;
   Eigen::Vector3d FrictionDirection(const ActiveContact& contact) const;
   void SetFriction(const ActiveContact& contact, dContact& joint) const;
+  void ResistSpin(const ActiveContact& contact);
   void CreateObjectContact(ActiveContact& contact, double h);
   void CreateSelfContact(const ContactPoint& point, double h);
   void CollectForces();

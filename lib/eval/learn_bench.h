@@ -1,0 +1,83 @@
+// How fast policies learn: rollout inference, update and whole iterations against the machine's
+// peak and against libtorch: `bench_learn`.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/options.h"
+#include "eval/learn_bench_machine.h"
+#include "eval/sim_bench.h"
+#include "eval/sim_table.h"
+#include "policy/structure.h"
+#include "rl/ppo_options.h"
+
+namespace dexremoe {
+
+struct LearnBenchOptions {
+  std::vector<int> envs = {512, 2048, 8192, 32768};
+  std::vector<int> mini_epochs = {1, 3, 5};
+  int horizon = PpoOptions().horizon;
+  int minibatch = PpoOptions().minibatch;  // rows; at most those of a batch
+  int hidden = PolicyOptions().hidden;
+  int slices = 3;      // of every part, taken in turn
+  double slice = 0.5;  // s; at least one iteration
+  std::string peer;    // program that times the update on libtorch, for the last of mini_epochs
+  std::uint64_t seed = 1;
+  void Register(Options& options);  // without a section
+  void MakeQuick();                 // sizes that take seconds
+
+  // What the learner is made with: the place for every choice that changes how it computes.
+  PpoOptions Ppo(int num_envs, int epochs) const;
+  PolicyOptions Policy() const;
+};
+
+// Seconds per unit of work, slice by slice.
+struct SliceTimes {
+  std::vector<double> wall, cpu;  // by the clock; processor time of all threads
+  void Add(const Cost& cost, int count);
+};
+
+// work / seconds of every slice.
+std::vector<double> RatesOf(double work, const std::vector<double>& seconds);
+
+// Training on the lanes engine with the object in every hand, timed slice by slice.
+class TimedTraining {
+ public:
+  // `hand`, `task` and `pool` must outlive it.
+  TimedTraining(const PpoOptions& ppo, const PolicyOptions& policy, const HandModel& hand,
+                const TaskOptions& task, const GraspedObject& object, std::uint64_t seed,
+                ThreadPool& pool);
+  ~TimedTraining();
+
+  // One iteration that counts nowhere.
+  void WarmUp();
+  // At least one iteration and `seconds` of them; then the same of forward passes alone.
+  void RunSlice(double seconds);
+
+  double samples() const;  // of an iteration
+  const ParamLayout& layout() const;
+  const SliceTimes& forward() const;    // per forward pass of all environments
+  const SliceTimes& update() const;     // per iteration
+  const SliceTimes& iteration() const;  // rollout and update
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+struct LearnBenchResult {
+  std::vector<Measurement> measurements;
+  std::string notes;  // what was left out, and with what the peer computes; one a line
+  std::string Markdown() const;
+};
+
+// Measures every combination of options.envs and options.mini_epochs on `workers` threads (0: one
+// per processor). Throws Error when no cube can be held, or when the peer fails or has another
+// network.
+LearnBenchResult RunLearnBench(const LearnBenchOptions& options, const HandModel& hand,
+                               const TaskOptions& task, int workers);
+
+}  // namespace dexremoe

@@ -1,0 +1,75 @@
+#include "eval/learn_bench_peer.h"
+
+#include <sys/wait.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+#include <vector>
+
+#include "base/error.h"
+
+namespace dexremoe {
+namespace {
+
+constexpr std::size_t kFields = 7;
+
+// For the shell.
+std::string Quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+// The standard output of a shell command.
+std::string OutputOf(const std::string& program, const std::string& command) {
+  std::FILE* pipe = popen(command.c_str(), "re");
+  if (pipe == nullptr) Fail("{}: cannot be started: {}", program, std::strerror(errno));
+  std::string text;
+  char chunk[256];
+  while (const std::size_t got = std::fread(chunk, 1, sizeof chunk, pipe)) text.append(chunk, got);
+  const int status = pclose(pipe);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    Fail("{}: expected success, found wait status {}", program, status);
+  return text;
+}
+
+}  // namespace
+
+PeerUpdate ParsePeer(const std::string& program, const std::string& line) {
+  std::vector<std::string> fields;
+  std::istringstream text(line.substr(0, line.find('\n')));
+  for (std::string field; std::getline(text, field, ',');) fields.push_back(field);
+  if (fields.size() != kFields)
+    Fail("{}: output: expected a line of {} fields, found '{}'", program, kFields, line);
+  const auto number = [&](std::size_t i) {
+    char* end = nullptr;
+    const double value = std::strtod(fields[i].c_str(), &end);
+    if (*end != '\0' || !(value > 0) || !std::isfinite(value))
+      Fail("{}: output: field {}: expected a positive number, found '{}'", program, i + 1,
+           fields[i]);
+    return value;
+  };
+  return {fields[0], fields[1], number(2), number(4), number(5), number(6)};
+}
+
+PeerUpdate RunPeer(const std::string& program, const PpoOptions& ppo, const PolicyOptions& policy,
+                   int workers, double seconds) {
+  std::string hidden;
+  for (int layer = 0; layer < policy.layers; ++layer)
+    hidden += fmt::format("{}{}", layer > 0 ? "," : "", policy.hidden);
+  // The libraries below libtorch read their number of threads when they are loaded.
+  return ParsePeer(
+      program,
+      OutputOf(program,
+               fmt::format("OMP_NUM_THREADS={0} OPENBLAS_NUM_THREADS={0} {1} --workers={0} "
+                           "--envs={2} --horizon={3} --minibatch={4} --mini_epochs={5} "
+                           "--hidden={6} --seconds={7}",
+                           workers, Quoted(program), ppo.envs, ppo.horizon, ppo.minibatch,
+                           ppo.mini_epochs, hidden, seconds)));
+}
+
+}  // namespace dexremoe

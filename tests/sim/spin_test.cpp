@@ -1,0 +1,153 @@
+// Torsional friction: a block pinched by two opposite fingertips, and spun about the line between
+// them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "grasp_scene.h"
+
+namespace dexremoe {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kFinger = 0.1;           // m, from joint to tip
+constexpr double kServo = 3;              // N m/rad
+constexpr double kTorsion = 0.004;        // m
+const Vector3d kBlock(0.08, 0.08, 0.04);  // m
+
+// Adds a finger along +x whose tip, a ball, rests at (0, 0, z) and turns about y.
+void AddFinger(double z, HandModel& hand) {
+  HandModel one = scenes::Rotor();
+  const int link = static_cast<int>(hand.links.size()), joint = link - 1;
+  one.links[1].name = "finger" + std::to_string(link);
+  one.links[1].chain = joint;
+  one.joints[0].name = "joint" + std::to_string(link);
+  one.joints[0].child = link;
+  one.joints[0].X_PJ.p = {-kFinger, 0, z};
+  Collider tip;
+  tip.name = "tip" + std::to_string(link);
+  tip.link = link;
+  tip.shape = ColliderShape::kSphere;
+  tip.X_LC.p = {kFinger, 0, 0};
+  tip.radius = 0.01;
+  tip.fingertip = true;
+  hand.links.push_back(one.links[1]);
+  hand.joints.push_back(one.joints[0]);
+  hand.chains.push_back({joint});
+  hand.tip_frames.push_back(Pose());
+  hand.colliders.push_back(tip);
+}
+
+HandModel Pincers() {
+  HandModel hand = scenes::PalmOnly();
+  hand.colliders.clear();
+  hand.armature = 0.0015;
+  hand.kp = kServo;
+  for (const double side : {1.0, -1.0}) AddFinger(side * (kBlock.z() / 2 + 0.01), hand);
+  return hand;
+}
+
+// The block between the tips, which press on it with about a newton each.
+class Pinch {
+ public:
+  Pinch(const SimOptions& options, const EnvPhysics& physics)
+      : object_(scenes::Block(kBlock)), physics_(physics), rig_(options, Pincers(), {object_}) {
+    rig_->SetObject(0, 0, physics);
+    rig_->SetState(0, scenes::StateAt(2, Vector3d::Zero()));
+    rig_->SetHeld(0, true);
+    Step(30);
+    rig_->SetHeld(0, false);
+  }
+
+  void Step(int steps) {
+    for (int i = 0; i < steps; ++i) rig_->Step(kTargets);
+  }
+  void Spin(double speed) {
+    EnvState state = rig_->GetState(0);
+    state.w = {0, 0, speed};
+    rig_->SetState(0, state);
+  }
+  double Speed() { return rig_->GetState(0).w.z(); }
+  double Angle() {
+    const Eigen::Quaterniond q = rig_->GetState(0).X_WO.q;
+    return 2 * std::atan2(q.z(), q.w());
+  }
+  // Of both tips together, from the servos' torques; N.
+  double NormalForce() {
+    const EnvState state = rig_->GetState(0);
+    double sum = 0;
+    for (int j = 0; j < 2; ++j) sum += kServo * std::abs(kTargets[j] - state.q[j]) / kFinger;
+    return sum;
+  }
+  // About the pinch axis through the centre of mass; kg m^2.
+  double Inertia() const { return physics_.mass * object_.unit_inertia(2, 2); }
+
+ private:
+  const std::vector<double> kTargets = {0.035, -0.035};  // rad
+
+  SimObject object_;
+  EnvPhysics physics_;
+  scenes::Rig rig_;
+};
+
+EnvPhysics Weightless(double torsion) {
+  EnvPhysics physics;
+  physics.mass = 0.5;
+  physics.gravity.setZero();
+  physics.torsional_friction = torsion;
+  return physics;
+}
+
+// Gravity across the pinch axis pulls at a centre of mass beside it: `load` is its moment over the
+// most that torsional friction carries.
+double AngleUnderLoad(const SimOptions& options, double load) {
+  constexpr double kWeight = 0.2;  // N, a tenth of what the tips can carry
+  EnvPhysics physics;
+  physics.mass = 0.1;
+  physics.torsional_friction = kTorsion;
+  physics.gravity = {kWeight / physics.mass, 0, 0};
+  const double force = Pinch(options, Weightless(kTorsion)).NormalForce();
+  physics.com = {0, -load * kTorsion * force / kWeight, 0};
+  Pinch pinch(options, physics);
+  pinch.Step(60);
+  return pinch.Angle();
+}
+
+class SoftFinger : public scenes::OnEveryEngine {};
+DEX_RUN_ON_EVERY_ENGINE(SoftFinger);
+
+TEST_P(SoftFinger, APinchedObjectThatSpinsSlowsAtTheRateOfTheMomentAndStops) {
+  for (const int substeps : GetParam().substeps) {
+    Pinch pinch(Options(substeps), Weightless(kTorsion));
+    pinch.Spin(6);
+    pinch.Step(3);
+    const double before = pinch.Speed();
+    pinch.Step(12);
+    const double rate = (before - pinch.Speed()) * 5;
+    const double expected = kTorsion * pinch.NormalForce() / pinch.Inertia();
+    std::printf("substeps %d: slows by %.3f rad/s^2, expected %.3f\n", substeps, rate, expected);
+    EXPECT_NEAR(rate, expected, 0.03 * expected);
+    pinch.Step(45);
+    EXPECT_NEAR(pinch.Speed(), 0, 0.02);
+  }
+}
+
+TEST_P(SoftFinger, BetweenPointContactsAPinchedObjectSpinsOn) {
+  Pinch pinch(Options(GetParam().substeps.back()), Weightless(0));
+  pinch.Spin(6);
+  pinch.Step(60);
+  EXPECT_NEAR(pinch.Speed(), 6, 0.1);
+}
+
+TEST_P(SoftFinger, ATorqueBelowTheBoundHoldsAndOneAboveItTurns) {
+  const SimOptions options = Options(GetParam().substeps.back());
+  const double below = AngleUnderLoad(options, 0.8), above = AngleUnderLoad(options, 1.25);
+  std::printf("after 1 s: %.4f rad at 0.8 of the bound, %.4f rad at 1.25\n", below, above);
+  EXPECT_LT(std::abs(below), GetParam().spin_creep);
+  EXPECT_GT(std::abs(above), 0.3);
+}
+
+}  // namespace
+}  // namespace dexremoe
