@@ -13,8 +13,10 @@ CHECK ?= ode#                      ## physics engine of evaluation
 HAND ?= data/hand/gx11.urdf#       ## hand description
 WORKERS ?= 0#                      ## threads (0: one per processor); results do not depend on it
 SEED ?= 1#                         ## seed of everything random
-CONFIG ?= data/config/quick.toml#  ## sizes and hyper-parameters of all stages
-OUT ?= results/quick$(if $(filter builtin,$(OBJECTS)),,-$(notdir $(OBJECTS:%/=%)))#  ## folder of the run
+LAUNCH ?= #                        ## starts trainings on several processes, e.g. "mpirun -n 4"
+SCALE ?= quick#                    ## size of the run: quick, desk or paper
+CONFIG ?= data/config/$(SCALE).toml#  ## sizes and hyper-parameters of all stages
+OUT ?= results/$(SCALE)$(if $(filter builtin,$(OBJECTS)),,-$(notdir $(OBJECTS:%/=%)))#  ## folder of the run
 
 # Recursive calls use all processors unless the user gave -j.
 JOBS = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(shell nproc))
@@ -36,4 +38,4 @@ help:  ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  \1\t\2/' | expand -t 16
 	@printf '\nVariables:\n'
 	@grep -hE '^[A-Z]+ [?]=.*## ' Makefile | sed -E 's/^([A-Z]+) [?]= *([^#]*)# *## (.*)/  \1=\2\t\3/' \
-	  | sed -E 's/=results.*\t/=results\/quick\t/' | expand -t 34
+	  | sed -E 's/=results.*\t/=results\/$$(SCALE)\t/' | expand -t 34

@@ -8,8 +8,8 @@ BUILD   ?= build
 CXX      ?= g++
 # Expanded when something is compiled, not when make starts: the packages may come with this run.
 INCLUDES = $(addprefix -isystem ,$(wildcard /usr/include/pcl-*)) \
-  $(patsubst -I%,-isystem %,$(shell pkg-config --cflags eigen3 hdf5-serial freetype2))
-PKG_LIBS = $(shell pkg-config --libs hdf5-serial ode assimp ccd urdfdom fmt libpng libxxhash freetype2) \
+  $(patsubst -I%,-isystem %,$(shell pkg-config --cflags eigen3 hdf5-serial freetype2 mpi-c))
+PKG_LIBS = $(shell pkg-config --libs hdf5-serial ode assimp ccd urdfdom fmt libpng libxxhash freetype2 mpi-c) \
   -lOSMesa -lhwy -lqhullcpp -lqhull_r -ldnnl -lspdlog \
   -lpcl_common -lpcl_filters -lpcl_features -lpcl_search -lpcl_kdtree -lpcl_io \
   $(if $(wildcard /usr/include/mujoco/mujoco.h),-lmujoco)

@@ -18,6 +18,15 @@ quick: deps  ## meshes to tables, figures and films at small size (about 15 minu
 	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 experiment
 	@printf '\nDone. Look at:\n'; printf '  %s\n' $(PRODUCTS)
 
+# The trainings alone, at any size. Objects are made side by side, trainings run one after another:
+# each takes all processors (or, with LAUNCH, all machines).
+.PHONY: train ready trained
+train: deps  ## train base, experts and gate (SCALE=quick, desk or paper); called again, it goes on
+	+@$(MAKE) $(JOBS) --no-print-directory build
+	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 ready
+	+@$(MAKE) -j1 --no-print-directory EXPERIMENT=1 trained
+	@printf 'Trained: %s\nWatch with: tensorboard --logdir %s\n' $(OUT)/gate.h5 $(OUT)/tensorboard
+
 # The learning check: base policy against the untrained network on one cube.
 .PHONY: cube cube-products
 cube: deps  ## train on a single cube and compare with the untrained network (about 15 minutes)
@@ -90,13 +99,18 @@ $(OUT)/shape_net.h5: $(OUT)/objects.mk $(call OBJECT_FILES,cloud) | $(BIN)/train
 
 READY := $(OUT)/objects.mk $(call OBJECT_FILES,parts) $(call OBJECT_FILES,shape) $(call OBJECT_FILES,grasps)
 
+ready: $(READY)
+
 # --- Training -----------------------------------------------------------------------------------
-# A training writes its checkpoints to NAME.running.h5 and takes up from there after a kill.
+# A training writes its checkpoints to NAME.running.h5 and takes up from there after a kill. NAME.h5
+# is the last state; NAME.best.h5 the best one: highest successes per episode at the hardest task
+# that the curriculum reached.
 
 # $(1): tool and its inputs
 train = mkdir -p $(OUT)/curves && \
-  $(BIN)/$(1) $(COMMON) $(SIM) --objects=$(OUT)/objects.csv --out=$(@:.h5=.running.h5) --resume \
-    --curve=$(OUT)/curves/$(notdir $(@:.h5=.csv)) && mv $(@:.h5=.running.h5) $@
+  $(LAUNCH) $(BIN)/$(1) $(COMMON) $(SIM) --objects=$(OUT)/objects.csv --out=$(@:.h5=.running.h5) --resume \
+    --best=$(@:.h5=.best.h5) --curve=$(OUT)/curves/$(notdir $(@:.h5=.csv)) \
+    --tensorboard=$(OUT)/tensorboard/$(basename $(notdir $@)) && mv $(@:.h5=.running.h5) $@
 
 EXPERTS := generalist airplane train animal
 expert_categories_generalist := airplane,animal,head,shoe,train,vehicle
@@ -111,6 +125,8 @@ $(EXPERT_FILES): $(OUT)/expert_%.h5: $(OUT)/base.h5 | $(BIN)/train_expert
 	$(call train,train_expert --base=$< --categories=$(expert_categories_$*))
 $(OUT)/gate.h5: $(EXPERT_FILES) | $(BIN)/train_gate
 	$(call train,train_gate --experts=$(call commas,$(EXPERT_FILES)))
+
+trained: $(OUT)/gate.h5
 
 # Controls: the network as initialised, and the experts without a gate.
 $(OUT)/untrained.h5: $(READY) | $(BIN)/train_base

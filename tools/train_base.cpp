@@ -20,7 +20,8 @@ int main(int argc, char** argv) {
     kind.start = [&](const StageStart& start, int obs_size, int phys_size, int num_actions) {
       return StartBase(start, policy, obs_size, phys_size, num_actions);
     };
-    const TrainState state = RunStage(stage, options, kind, CatchStopSignals());
-    std::puts(StageSummary(stage, state).c_str());
+    const auto ranks = StartCommunicator();
+    const TrainState state = RunStage(stage, options, kind, *ranks, CatchStopSignals());
+    if (ranks->rank() == 0) std::puts(StageSummary(stage, state).c_str());
   });
 }

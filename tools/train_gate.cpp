@@ -25,7 +25,8 @@ int main(int argc, char** argv) {
     kind.start = [&](const StageStart& start, int, int, int) {
       return StartGate(start, policy, experts, kind.inputs);
     };
-    const TrainState state = RunStage(stage, options, kind, CatchStopSignals());
-    std::puts(StageSummary(stage, state).c_str());
+    const auto ranks = StartCommunicator();
+    const TrainState state = RunStage(stage, options, kind, *ranks, CatchStopSignals());
+    if (ranks->rank() == 0) std::puts(StageSummary(stage, state).c_str());
   });
 }

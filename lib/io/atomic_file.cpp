@@ -11,11 +11,15 @@
 
 namespace dexremoe {
 
-std::string PrepareTemporary(const std::string& path) {
+void MakeParentFolder(const std::string& path) {
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
   std::error_code code;
   if (!parent.empty()) std::filesystem::create_directories(parent, code);
   if (code) Fail("{}: cannot create the folder: {}", parent.string(), code.message());
+}
+
+std::string PrepareTemporary(const std::string& path) {
+  MakeParentFolder(path);
   return path + ".tmp";
 }
 

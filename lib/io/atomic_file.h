@@ -7,6 +7,8 @@
 
 namespace dexremoe {
 
+// Creates the folder that `path` is to stand in, if needed. Throws Error.
+void MakeParentFolder(const std::string& path);
 // Path under which `path` is written before Commit. Creates the parent folder if needed.
 std::string PrepareTemporary(const std::string& path);
 // Flushes `temporary` to disk and renames it to `path`. Throws Error.

@@ -59,10 +59,9 @@ void WriteRun(H5Writer& file, const TrainState& state) {
   file.WriteScalar("samples", state.samples, {"1", "", "environment steps done"});
   WriteCurriculum(file, state.curriculum);
   WriteWindow(file, state.window);
+  WriteBest(file, state);
   WriteCurve(file, state.curve);
-  file.Write("environment", state.environment,
-             {static_cast<std::int64_t>(state.environment.size())},
-             {"1", "byte", "state of all environments"});
+  WriteEnvironment(file, state.environment);
   const std::int64_t objects = state.table.objects();
   const std::int64_t width = objects > 0 ? state.table.feature.size() / objects : 0;
   file.WriteStrings("table/name", state.table.names, {"", "object", "objects trained on"});
@@ -103,8 +102,9 @@ void ReadRun(const H5Reader& file, TrainState& state) {
   state.samples = file.ReadScalar<std::int64_t>("samples");
   state.curriculum = ReadCurriculum(file);
   state.window = ReadWindow(file);
+  ReadBest(file, state);
   state.curve = ReadCurve(file);
-  state.environment = file.ReadValues<std::uint8_t>("environment", {-1});
+  state.environment = ReadEnvironment(file);
   state.table.names = file.ReadStrings("table/name");
   const std::int64_t objects = state.table.objects();
   state.table.feature =

@@ -1,20 +1,22 @@
 // Files of format dexremoe.checkpoint: base.h5, expert_*.h5, gate.h5.
 //
-// | dataset                       | dims, type      | meaning | | stage                         |
-// text            | base, expert or gate                          | | structure/* | text, i32 |
-// PolicyStructure, field by field               | | params/BLOCK                  | [rows,cols] f32
-// | parameters, one dataset per block             | | block, trainable              | [B] text, u8
-// | blocks in order; 1 where training may change  | | adam/m, adam/v, adam/step     | [P] f32, i64
-// | optimiser over the trainable blocks in order  | | learning_rate                 | f64 | | |
-// normalizer/NAME/mean, /variance, /count | [c] f64 | running moments of obs, phys, feature, value
-// | | normalizer/clip               | f64             | limit of normalised inputs | | seed,
-// iteration, samples      | u64, i64        | with these, every random stream               | |
-// curriculum/*                  | f64, i64, u8    | difficulty and what the next decision rests on
-// | | window                        | [W,9] f64       | last ended episodes | | curve/column,
-// curve/row       | [20] text, [I,20] f64 | learning curve (no wall clock)          | | table/name,
-// /feature, /category | [K]           | objects trained on                            | |
-// environment                   | [bytes] u8      | VecEnv::Save                                  |
-// | example/*                     | f32, i32        | normalised inputs and the outputs they give |
+// | dataset                               | dims, type       | meaning                           |
+// | stage                                 | text             | base, expert or gate              |
+// | structure/*                           | text, i32        | PolicyStructure, field by field   |
+// | params/BLOCK                          | [rows,cols] f32  | parameters, a dataset per block   |
+// | block, trainable                      | [B] text, u8     | in order; 1 where training may go |
+// | adam/m, /v, /step                     | [P] f32, i64     | over the trainable blocks         |
+// | learning_rate                         | f64              | the next one                      |
+// | normalizer/NAME/mean,variance,count   | [c] f64          | of obs, phys, feature, value      |
+// | normalizer/clip                       | f64              | limit of normalised inputs        |
+// | seed, iteration, samples              | u64, i64         | with these, every random stream   |
+// | curriculum/*                          | f64, i64, u8     | difficulty, and the next decision |
+// | window                                | [W,9] f64        | last ended episodes               |
+// | best/progress, /successes, settled    | f64, i64         | RunScore, TrainState::settled     |
+// | curve/column, curve/row               | [20] text, [I,20] f64 | without wall clock           |
+// | table/name, /feature, /category       | [K]              | objects trained on                |
+// | environment, environment_end          | [bytes] u8, [ranks] i64 | VecEnv::Save; none in best |
+// | example/*                             | f32, i32         | normalised inputs and outputs     |
 //
 // A resumed run continues bit for bit; the file holds no wall clock, so equal runs give equal
 // bytes.

@@ -139,6 +139,22 @@ std::vector<EpisodeRecord> ReadWindow(const H5Reader& file) {
   return window;
 }
 
+void WriteBest(H5Writer& file, const TrainState& state) {
+  file.WriteScalar("best/progress", state.best.progress,
+                   {"rad", "", "goal angle over velocity tolerance at the best state so far"});
+  file.WriteScalar("best/successes", state.best.successes,
+                   {"1", "", "its successes per episode; -1 before the first full window"});
+  file.WriteScalar("settled", state.settled,
+                   {"1", "", "episodes ended since the difficulty last changed"});
+}
+
+void ReadBest(const H5Reader& file, TrainState& state) {
+  if (!file.Has("settled")) return;  // files from before it was kept
+  state.best.progress = file.ReadScalar<double>("best/progress");
+  state.best.successes = file.ReadScalar<double>("best/successes");
+  state.settled = file.ReadScalar<std::int64_t>("settled");
+}
+
 void WriteCurve(H5Writer& file, const std::vector<CurveRow>& curve) {
   std::vector<double> values;
   for (const CurveRow& row : curve) values.insert(values.end(), row.begin(), row.end());
@@ -156,6 +172,33 @@ std::vector<CurveRow> ReadCurve(const H5Reader& file) {
   for (std::size_t i = 0; i < curve.size(); ++i)
     std::copy_n(values.begin() + i * kCurveColumns.size(), kCurveColumns.size(), curve[i].begin());
   return curve;
+}
+
+void WriteEnvironment(H5Writer& file, const std::vector<std::vector<std::uint8_t>>& ranks) {
+  std::vector<std::uint8_t> all;
+  std::vector<std::int64_t> end;
+  for (const std::vector<std::uint8_t>& rank : ranks) {
+    all.insert(all.end(), rank.begin(), rank.end());
+    end.push_back(static_cast<std::int64_t>(all.size()));
+  }
+  file.Write("environment", all, {static_cast<std::int64_t>(all.size())},
+             {"1", "byte", "state of all environments, rank after rank"});
+  file.Write("environment_end", end, {static_cast<std::int64_t>(end.size())},
+             {"byte", "rank", "where the ranks' parts end"});
+}
+
+std::vector<std::vector<std::uint8_t>> ReadEnvironment(const H5Reader& file) {
+  const auto all = file.ReadValues<std::uint8_t>("environment", {-1});
+  if (!file.Has("environment_end")) return {all};  // files from before there were ranks
+  std::vector<std::vector<std::uint8_t>> ranks;
+  std::int64_t begin = 0;
+  for (const std::int64_t end : file.ReadValues<std::int64_t>("environment_end", {-1})) {
+    if (end < begin || end > static_cast<std::int64_t>(all.size()))
+      Fail("{}: environment_end: expected {} to {}, found {}", file.path(), begin, all.size(), end);
+    ranks.emplace_back(all.begin() + begin, all.begin() + end);
+    begin = end;
+  }
+  return ranks;
 }
 
 PolicyExample MakeExample(const TrainState& state, const Policy<float>& policy) {

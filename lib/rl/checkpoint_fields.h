@@ -18,8 +18,15 @@ CurriculumState ReadCurriculum(const H5Reader& file);
 void WriteWindow(H5Writer& file, const std::vector<EpisodeRecord>& window);
 std::vector<EpisodeRecord> ReadWindow(const H5Reader& file);
 
+// The score of the best state so far, and what the next score rests on.
+void WriteBest(H5Writer& file, const TrainState& state);
+void ReadBest(const H5Reader& file, TrainState& state);
+
 void WriteCurve(H5Writer& file, const std::vector<CurveRow>& curve);
 std::vector<CurveRow> ReadCurve(const H5Reader& file);
+
+void WriteEnvironment(H5Writer& file, const std::vector<std::vector<std::uint8_t>>& ranks);
+std::vector<std::vector<std::uint8_t>> ReadEnvironment(const H5Reader& file);
 
 // A few rows of normalised inputs and what the policy makes of them.
 struct PolicyExample {

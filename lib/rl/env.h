@@ -19,6 +19,8 @@ class VecEnv {
   virtual ~VecEnv() = default;
 
   virtual int num_envs() const = 0;
+  // Number of environment 0 among those of all ranks; addresses random streams.
+  virtual int first_env() const { return 0; }
   virtual int obs_size() const = 0;
   virtual int phys_size() const = 0;
   virtual int num_actions() const = 0;

@@ -1,7 +1,5 @@
 #include "rl/gae.h"
 
-#include <cmath>
-
 #include "base/check.h"
 
 namespace dexremoe {
@@ -30,15 +28,6 @@ void ComputeGae(int steps, int envs, double gamma, double lambda, const std::vec
       target[row] = static_cast<float>(next_advantage + next_value);
     }
   }
-}
-
-void NormalizeAdvantages(std::vector<float>& advantage) {
-  double sum = 0, square = 0;
-  for (const float a : advantage) sum += a;
-  const double mean = sum / static_cast<double>(advantage.size());
-  for (const float a : advantage) square += (a - mean) * (a - mean);
-  const double spread = std::sqrt(square / static_cast<double>(advantage.size())) + 1e-8;
-  for (float& a : advantage) a = static_cast<float>((a - mean) / spread);
 }
 
 }  // namespace dexremoe

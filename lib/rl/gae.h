@@ -17,7 +17,4 @@ void ComputeGae(int steps, int envs, double gamma, double lambda, const std::vec
                 const std::vector<float>& last_value, std::vector<float>& advantage,
                 std::vector<float>& target);
 
-// Shifts and scales to mean 0 and variance 1 over the whole batch.
-void NormalizeAdvantages(std::vector<float>& advantage);
-
 }  // namespace dexremoe

@@ -1,6 +1,7 @@
 #include "rl/ppo.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/check.h"
@@ -8,32 +9,20 @@
 #include "base/random.h"
 #include "rl/gae.h"
 #include "rl/ppo_loss.h"
+#include "rl/rank_statistics.h"
 
 namespace dexremoe {
 namespace {
 
-// Fisher-Yates, from (seed, kShuffle, iteration, epoch).
-void Shuffle(std::uint64_t seed, std::int64_t iteration, int epoch, std::vector<int>& order) {
-  Rng rng(seed, Stream::kShuffle,
-          {static_cast<std::uint64_t>(iteration), static_cast<std::uint64_t>(epoch)});
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng.Index(i)]);
-}
-
-double ExplainedVariance(const std::vector<float>& value, const std::vector<float>& target) {
-  const double n = static_cast<double>(target.size());
-  double mean = 0, error_mean = 0;
-  for (std::size_t i = 0; i < target.size(); ++i) {
-    mean += target[i] / n;
-    error_mean += (target[i] - value[i]) / n;
-  }
-  double variance = 0, left = 0;
-  for (std::size_t i = 0; i < target.size(); ++i) {
-    const double error = target[i] - value[i] - error_mean;
-    variance += (target[i] - mean) * (target[i] - mean);
-    left += error * error;
-  }
-  return variance > 0 ? 1 - left / variance : 0;
+// Fisher-Yates, from (seed, kShuffle, iteration, epoch) and, where there are others, the rank.
+void Shuffle(std::uint64_t seed, std::int64_t iteration, int epoch, const Communicator& ranks,
+             std::vector<int>& order) {
+  const auto i = static_cast<std::uint64_t>(iteration), e = static_cast<std::uint64_t>(epoch),
+             rank = static_cast<std::uint64_t>(ranks.rank());
+  Rng rng(ranks.size() == 1 ? SeedOf(seed, Stream::kShuffle, {i, e})
+                            : SeedOf(seed, Stream::kShuffle, {i, e, rank}));
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);
+  for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[rng.Index(k)]);
 }
 
 // Copies the rows of a [R, width] matrix.
@@ -55,10 +44,12 @@ double AdaptRate(const PpoOptions& options, double kl, double rate) {
   return rate;
 }
 
-PpoLearner::PpoLearner(const PpoOptions& options, const Policy<float>& policy, ThreadPool& pool)
+PpoLearner::PpoLearner(const PpoOptions& options, const Policy<float>& policy, ThreadPool& pool,
+                       Communicator& communicator)
     : options_(options),
       policy_(policy),
       pool_(pool),
+      communicator_(communicator),
       trainable_(policy.layout(), policy.trainable()),
       scratch_(pool.workers()) {}
 
@@ -67,12 +58,14 @@ UpdateStats PpoLearner::Update(const RolloutBatch& batch, const ShapeInputs<floa
   UpdateStats stats;
   ComputeGae(batch.steps, batch.envs, options_.gamma, options_.lambda, batch.reward, batch.done,
              batch.value, batch.last_value, advantage_, target_);
-  stats.explained_variance = ExplainedVariance(batch.value, target_);
+  stats.explained_variance = ExplainedVariance(communicator_, batch.value, target_);
   Prepare(batch, state);
   const int rows = static_cast<int>(order_.size());
-  const int minibatches = std::max(1, (rows + options_.minibatch / 2) / options_.minibatch);
+  const std::int64_t all_rows = static_cast<std::int64_t>(rows) * communicator_.size();
+  const int minibatches = static_cast<int>(
+      std::max<std::int64_t>(1, (all_rows + options_.minibatch / 2) / options_.minibatch));
   for (int epoch = 0; epoch < options_.mini_epochs; ++epoch) {
-    Shuffle(state.seed, state.iteration, epoch, order_);
+    Shuffle(state.seed, state.iteration, epoch, communicator_, order_);
     BlockSums total;
     double norm = 0;
     for (int m = 0; m < minibatches; ++m) {
@@ -84,14 +77,16 @@ UpdateStats PpoLearner::Update(const RolloutBatch& batch, const ShapeInputs<floa
       AdamStep({}, state.learning_rate, grads_, state.adam, values_);
       trainable_.Scatter(values_, state.params);
     }
-    const double share = 1.0 / (static_cast<double>(rows) * options_.mini_epochs);
+    SumOverRanks(total);
+    const double share = 1.0 / (static_cast<double>(all_rows) * options_.mini_epochs);
     stats.policy_loss += total.policy_loss * share;
     stats.value_loss += total.value_loss * share;
     stats.kl += total.kl * share;
     stats.clip_fraction += total.clipped * share;
     stats.gradient_norm += norm / minibatches / options_.mini_epochs;
     if (options_.adaptive)
-      state.learning_rate = AdaptRate(options_, total.kl / rows, state.learning_rate);
+      state.learning_rate =
+          AdaptRate(options_, total.kl / static_cast<double>(all_rows), state.learning_rate);
   }
   CheckFinite(values_, "value", state);
   return stats;
@@ -103,11 +98,13 @@ void PpoLearner::Prepare(const RolloutBatch& batch, TrainState& state) {
   const std::int64_t rows = static_cast<std::int64_t>(target_.size());
   const int actions = policy_.structure().num_actions;
   RunningMoments& moments = state.normalizers.value;
-  UpdateMoments(rows, target_.data(), moments);
+  RunningMoments fresh = EmptyMoments(1);
+  UpdateMoments(rows, target_.data(), fresh);
+  MergeMoments(communicator_, fresh, moments);
   old_value_ = batch.value;
   NormalizeValues(moments, old_value_.data(), rows);
   NormalizeValues(moments, target_.data(), rows);
-  NormalizeAdvantages(advantage_);
+  NormalizeAdvantages(communicator_, advantage_);
   reference_mean_ = batch.mean;
   reference_log_std_.resize(rows * actions);
   for (std::int64_t r = 0; r < rows; ++r)
@@ -123,19 +120,30 @@ void PpoLearner::Minibatch(const RolloutBatch& batch, const ShapeInputs<float>& 
   while (static_cast<int>(block_grads_.size()) < blocks)
     block_grads_.push_back(std::make_unique_for_overwrite<float[]>(policy_.layout().size()));
   std::vector<BlockSums> sums(blocks);
+  const double row_weight = 1.0 / (static_cast<double>(count) * communicator_.size());
   pool_.ParallelFor(blocks, [&](int block, int worker) {
     const int begin = block * options_.block_rows;
     const int size = std::min(options_.block_rows, count - begin);
-    Block(batch, shapes, rows + begin, size, 1.0 / count, state, block_grads_[block].get(),
+    Block(batch, shapes, rows + begin, size, row_weight, state, block_grads_[block].get(),
           sums[block], scratch_[worker]);
   });
   ReduceGradients(blocks, sums);
+  communicator_.Sum(grads_);
   for (const BlockSums& s : sums) {
     total.policy_loss += s.policy_loss;
     total.value_loss += s.value_loss;
     total.kl += s.kl;
     total.clipped += s.clipped;
   }
+}
+
+void PpoLearner::SumOverRanks(BlockSums& total) {
+  std::array<double, 4> sums = {total.policy_loss, total.value_loss, total.kl, total.clipped};
+  communicator_.Sum(sums);
+  total.policy_loss = sums[0];
+  total.value_loss = sums[1];
+  total.kl = sums[2];
+  total.clipped = sums[3];
 }
 
 PolicyRows<float> PpoLearner::Gather(const RolloutBatch& batch, const int* rows, int count,

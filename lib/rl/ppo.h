@@ -6,6 +6,7 @@
 
 #include "base/thread_pool.h"
 #include "policy/policy.h"
+#include "rl/communicator.h"
 #include "rl/ppo_options.h"
 #include "rl/rollout.h"
 #include "rl/train_state.h"
@@ -27,8 +28,9 @@ double AdaptRate(const PpoOptions& options, double kl, double rate);
 // are summed in block order. So the result does not depend on the number of threads.
 class PpoLearner {
  public:
-  // Both must outlive this.
-  PpoLearner(const PpoOptions& options, const Policy<float>& policy, ThreadPool& pool);
+  // All must outlive this. Every rank brings as many rows; options.minibatch counts those of all.
+  PpoLearner(const PpoOptions& options, const Policy<float>& policy, ThreadPool& pool,
+             Communicator& communicator = Alone());
 
   // Changes params, adam, learning_rate and normalizers.value of `state`. Throws Error naming
   // iteration and block when a gradient or a parameter is not finite.
@@ -53,6 +55,7 @@ class PpoLearner {
   void Block(const RolloutBatch& batch, const ShapeInputs<float>& shapes, const int* rows,
              int count, double row_weight, const TrainState& state, float* grads, BlockSums& sums,
              Scratch& scratch);
+  void SumOverRanks(BlockSums& total);
   PolicyRows<float> Gather(const RolloutBatch& batch, const int* rows, int count,
                            Scratch& scratch) const;
   void RowLoss(const RolloutBatch& batch, int row, const float* log_std, float row_weight,
@@ -63,6 +66,7 @@ class PpoLearner {
   PpoOptions options_;
   const Policy<float>& policy_;
   ThreadPool& pool_;
+  Communicator& communicator_;
   TrainableSet trainable_;
   // Of the batch at hand.
   std::vector<float> advantage_, target_, old_value_;      // [R]; the last two normalised

@@ -11,6 +11,7 @@ class ReorientEnv final : public VecEnv {
   explicit ReorientEnv(ReorientBatch& batch) : batch_(batch) {}
 
   int num_envs() const override { return batch_.num_envs(); }
+  int first_env() const override { return batch_.first_env(); }
   int obs_size() const override { return batch_.obs_size(); }
   int phys_size() const override { return batch_.phys_size(); }
   int num_actions() const override { return batch_.num_joints(); }

@@ -95,7 +95,7 @@ void Rollout::Act(const TrainState& state, const ShapeInputs<float>& shapes, int
     for (int env = block * kActBlock; env < end; ++env) {
       Rng rng(state.seed, Stream::kAction,
               {static_cast<std::uint64_t>(state.iteration), static_cast<std::uint64_t>(t),
-               static_cast<std::uint64_t>(env)});
+               static_cast<std::uint64_t>(env_.first_env() + env)});
       float* action = batch_.action.data() + (row + env) * count;
       for (int a = 0; a < count; ++a)
         action[a] =

@@ -1,14 +1,17 @@
 #include "rl/stage.h"
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <filesystem>
+#include <optional>
+#include <thread>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "io/file_lock.h"
 #include "rl/checkpoint.h"
-#include "rl/curve_file.h"
 #include "rl/reorient_env.h"
+#include "rl/run_files.h"
 #include "rl/trainer.h"
 
 namespace dexremoe {
@@ -44,15 +47,26 @@ void CheckSizes(const TrainState& state, const VecEnv& env, const std::string& p
   check("num_actions", env.num_actions(), s.num_actions);
 }
 
+// "base.h5" -> "base.best.h5", unless the user names another.
+std::string BestPath(const StageOptions& stage) {
+  if (!stage.best.empty()) return stage.best;
+  return std::filesystem::path(stage.out).replace_extension(".best.h5");
+}
+
 // Where the run begins: at the checkpoint it left, or at the stage's first state.
 TrainState FirstState(const StageOptions& stage, const Options& options, const StageKind& kind,
-                      const StageStart& start, const VecEnv& env) {
+                      const StageStart& start, const VecEnv& env, const Communicator& ranks) {
   if (stage.resume && std::filesystem::exists(stage.out)) {
     CheckSameOptions(stage.out, options.Text());
     TrainState state = ReadCheckpoint(stage.out);
     if (state.table.names != start.table.names || state.table.feature != start.table.feature)
       Fail("{}: table: expected the objects of {}, found others; start anew without --resume",
            stage.out, stage.objects);
+    const int processes = static_cast<int>(state.environment.size());
+    if (processes > 0 && processes != ranks.size())
+      Fail("{}: environment_end: expected a run of {} processes as now, found one of {}", stage.out,
+           ranks.size(), processes);
+    if (!std::filesystem::exists(BestPath(stage))) state.best = {};  // taken away: find it anew
     LogInfo("resuming {} at iteration {}, {} samples", stage.out, state.iteration, state.samples);
     return state;
   }
@@ -69,54 +83,56 @@ std::string ProgressNote(const CurveRow& row, const IterationTime& time, double 
       samples / (time.rollout + time.update));
 }
 
-class Saver {
- public:
-  Saver(const StageOptions& stage, Provenance provenance, const std::vector<CurveRow>& rows)
-      : stage_(stage),
-        provenance_(std::move(provenance)),
-        curve_(stage.curve, rows),
-        last_(Clock::now()) {}
-
-  CurveFile& curve() { return curve_; }
-  bool Due() const {
-    return std::chrono::duration<double>(Clock::now() - last_).count() >
-           60 * stage_.checkpoint_minutes;
-  }
-  void Save(Trainer& trainer) {
-    WriteCheckpoint(stage_.out, trainer.Snapshot(), provenance_);
-    curve_.Write();
-    last_ = Clock::now();
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  const StageOptions& stage_;
-  Provenance provenance_;
-  CurveFile curve_;
-  Clock::time_point last_;
-};
-
-void Train(const StageOptions& stage, Trainer& trainer, Saver& saver,
-           const std::atomic<bool>& stop) {
+// `files` on rank 0 only; the ranks decide as one when to save and when to stop.
+void Train(const StageOptions& stage, Trainer& trainer, std::optional<RunFiles>& files,
+           Communicator& ranks, const std::atomic<bool>& stop) {
   Progress progress(trainer.state().stage, stage.samples);
+  const auto save = [&] {
+    const TrainState& last = trainer.Snapshot();
+    if (files) files->Save(last);
+    ranks.Barrier();  // no rank ends before the files are whole
+  };
   while (static_cast<double>(trainer.state().samples) < stage.samples) {
     const double before = static_cast<double>(trainer.state().samples);
     const CurveRow& row = trainer.Iterate();
     const double samples = static_cast<double>(trainer.state().samples) - before;
-    saver.curve().Add(row, trainer.time(), samples);
-    progress.Update(std::min(before + samples, stage.samples),
-                    ProgressNote(row, trainer.time(), samples));
-    if (stop) {
-      saver.Save(trainer);
+    if (files) {
+      files->Add(trainer, samples);
+      progress.Update(std::min(before + samples, stage.samples),
+                      ProgressNote(row, trainer.time(), samples));
+    }
+    std::array<double, 2> wishes = {stop ? 1.0 : 0.0, files && files->Due() ? 1.0 : 0.0};
+    ranks.Sum(wishes);
+    if (wishes[0] + wishes[1] > 0) save();
+    if (wishes[0] > 0)
       Fail(
           "stopped at {} of {:.0f} samples; {} is written; the same command with --resume=true "
           "continues it",
           trainer.state().samples, stage.samples, stage.out);
-    }
-    if (saver.Due()) saver.Save(trainer);
   }
   progress.Finish();
-  saver.Save(trainer);
+  save();
+}
+
+// Threads of this rank: those asked for, or its share of the machine's processors.
+int Workers(const StageOptions& stage, const Communicator& ranks) {
+  if (stage.workers > 0) return stage.workers;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / ranks.local_size());
+}
+
+int EnvsPerRank(const StageOptions& stage, const Communicator& ranks) {
+  if (stage.ppo.envs % ranks.size() != 0)
+    Fail("ppo.envs: expected a multiple of {} processes, found {}", ranks.size(), stage.ppo.envs);
+  return stage.ppo.envs / ranks.size();
+}
+
+// Everything that the training rests on, for the provenance.
+std::vector<std::string> Inputs(const StageOptions& stage, const StageKind& kind,
+                                const std::vector<ObjectEntry>& entries) {
+  std::vector<std::string> inputs = {stage.objects, stage.hand.urdf};
+  inputs.insert(inputs.end(), kind.inputs.begin(), kind.inputs.end());
+  for (const ObjectEntry& entry : entries) inputs.push_back(entry.grasps);
+  return inputs;
 }
 
 }  // namespace
@@ -124,10 +140,15 @@ void Train(const StageOptions& stage, Trainer& trainer, Saver& saver,
 void StageOptions::Register(Options& options) {
   options.Add("objects", &objects, "objects.csv: those of split train are used").Required();
   options.Add("out", &out, "checkpoint to write (HDF5)").Required().NotStored();
+  options.Add("best", &best, "checkpoint of the best state; none: NAME.best.h5 beside --out")
+      .NotStored();
   options.Add("curve", &curve, "learning curve to write (CSV)").NotStored();
+  options.Add("tensorboard", &tensorboard, "folder for TensorBoard's event files").NotStored();
   options.Add("samples", &samples, "environment steps to train for").Required().Range(0, 1e15);
   options.Add("seed", &seed, "of all random streams");
-  options.Add("workers", &workers, "threads; 0: as many as processors").Range(0, 1024).NotStored();
+  options.Add("workers", &workers, "threads (of each process); 0: as many as processors")
+      .Range(0, 1024)
+      .NotStored();
   options.Add("resume", &resume, "continue from --out when it exists").NotStored();
   options.Add("checkpoint_minutes", &checkpoint_minutes, "minutes between checkpoints")
       .Range(0, 1e6)
@@ -139,27 +160,35 @@ void StageOptions::Register(Options& options) {
 }
 
 TrainState RunStage(const StageOptions& stage, const Options& options, const StageKind& kind,
-                    const std::atomic<bool>& stop) {
+                    Communicator& ranks, const std::atomic<bool>& stop) {
   stage.ppo.Check();
-  ThreadPool pool(stage.workers);
+  if (ranks.rank() > 0) SetLogLevel(LogLevel::kWarning);  // one voice is enough
+  std::optional<FileLock> lock;  // a killed launcher may have left a training behind
+  if (ranks.rank() == 0) lock.emplace(stage.out);
+  ThreadPool pool(Workers(stage, ranks));
   const std::vector<ObjectEntry> entries = SelectObjects(stage, kind);
   const std::vector<TaskObject> objects = LoadObjects(entries, {});
   const HandModel hand = LoadHand(stage.hand);
-  ReorientBatch batch(stage.task, stage.sim, hand, objects, stage.ppo.envs, stage.seed, pool);
+  const int envs = EnvsPerRank(stage, ranks);
+  ReorientBatch batch(stage.task, stage.sim, hand, objects, envs, stage.seed, pool);
+  batch.PlaceIn(ranks.rank() * envs, stage.ppo.envs);
   ReorientEnv env(batch);
   const StageStart start = {stage.ppo,
                             {stage.task.goal_angle, stage.task.velocity_tolerance},
                             MakeShapeTable(objects),
                             stage.seed};
-  std::vector<std::string> inputs = {stage.objects, stage.hand.urdf};
-  inputs.insert(inputs.end(), kind.inputs.begin(), kind.inputs.end());
-  for (const ObjectEntry& entry : entries) inputs.push_back(entry.grasps);
-  Trainer trainer(stage.ppo, start.task, FirstState(stage, options, kind, start, env), env, pool);
-  Saver saver(stage, MakeProvenance(options, stage.seed, inputs), trainer.state().curve);
+  Trainer trainer(stage.ppo, start.task, FirstState(stage, options, kind, start, env, ranks), env,
+                  pool, ranks);
+  std::optional<RunFiles> files;
+  if (ranks.rank() == 0)
+    files.emplace(RunPaths{stage.out, BestPath(stage), stage.curve, stage.tensorboard},
+                  MakeProvenance(options, stage.seed, Inputs(stage, kind, entries)),
+                  stage.checkpoint_minutes, trainer.state());
   LogInfo("{}: {} objects, {} environments, {} parameters of which {} in training",
-          trainer.state().stage, objects.size(), env.num_envs(), trainer.policy().layout().size(),
+          trainer.state().stage, objects.size(), stage.ppo.envs, trainer.policy().layout().size(),
           TrainableSet(trainer.policy().layout(), trainer.policy().trainable()).size());
-  Train(stage, trainer, saver, stop);
+  if (ranks.size() > 1) LogInfo("{} processes with {} threads each", ranks.size(), pool.workers());
+  Train(stage, trainer, files, ranks, stop);
   TrainState state = trainer.state();
   state.environment.clear();
   return state;

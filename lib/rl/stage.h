@@ -9,6 +9,7 @@
 
 #include "base/options.h"
 #include "hand/hand_model.h"
+#include "rl/communicator.h"
 #include "rl/ppo_options.h"
 #include "rl/start.h"
 #include "rl/train_state.h"
@@ -20,7 +21,9 @@ namespace dexremoe {
 struct StageOptions {
   std::string objects;  // objects.csv
   std::string out;
-  std::string curve;  // CSV; empty for none
+  std::string best;         // empty: beside `out`
+  std::string curve;        // CSV; empty for none
+  std::string tensorboard;  // folder of event files; empty for none
   double samples = 0;
   std::uint64_t seed = 1;
   int workers = 0;
@@ -42,12 +45,14 @@ struct StageKind {
       start;
 };
 
-// Trains on the objects of split "train" until `samples` environment steps are done; writes --out
-// and --curve every checkpoint_minutes and at the end. When `stop` turns true, finishes the
-// iteration, writes both and throws Error that says how to resume. Throws Error on bad input.
+// Trains on the objects of split "train" until `samples` environment steps are done; writes --out,
+// the best state beside it (see Trainer::improved) and --curve every checkpoint_minutes and at the
+// end, the events of --tensorboard at every iteration. When `stop` turns true, finishes the
+// iteration, writes all and throws Error that says how to resume. Throws Error on bad input.
+// With several ranks each trains on its share of the environments, and rank 0 writes the files.
 // Returns the final state, without the environments' bytes.
 TrainState RunStage(const StageOptions& stage, const Options& options, const StageKind& kind,
-                    const std::atomic<bool>& stop);
+                    Communicator& ranks, const std::atomic<bool>& stop);
 
 // One line for people: "base.h5: 2000000 samples, ...".
 std::string StageSummary(const StageOptions& stage, const TrainState& state);

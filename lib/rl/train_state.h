@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -43,6 +44,14 @@ inline constexpr std::array<const char*, 20> kCurveColumns = {"iteration",
                                                               "velocity_tolerance"};
 using CurveRow = std::array<double, kCurveColumns.size()>;
 
+// What decides between two states of one run: how far the curriculum had come, then success at that
+// difficulty.
+struct RunScore {
+  double progress = 0;    // rad, goal angle over velocity tolerance: grows as the curriculum moves
+  double successes = -1;  // per episode, mean over the window
+  auto operator<=>(const RunScore&) const = default;
+};
+
 struct TrainState {
   std::string stage;  // "base", "expert" or "gate"
   PolicyStructure structure;
@@ -54,9 +63,12 @@ struct TrainState {
   double learning_rate = 0;
   std::int64_t iteration = 0, samples = 0;
   CurriculumState curriculum;
-  std::vector<EpisodeRecord> window;      // last ended episodes, oldest first
-  std::vector<CurveRow> curve;            // one per iteration
-  std::vector<std::uint8_t> environment;  // VecEnv::Save
+  std::vector<EpisodeRecord> window;  // last ended episodes, oldest first
+  std::int64_t settled = 0;           // episodes ended since the difficulty last changed
+  RunScore best;                      // highest so far
+  std::vector<CurveRow> curve;        // one per iteration
+  // VecEnv::Save of every rank; empty: episodes start anew.
+  std::vector<std::vector<std::uint8_t>> environment;
 };
 
 }  // namespace dexremoe

@@ -1,9 +1,13 @@
 #include "rl/trainer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 
+#include "base/bytes.h"
 #include "base/check.h"
+#include "rl/rank_statistics.h"
 
 namespace dexremoe {
 namespace {
@@ -44,54 +48,90 @@ WindowMeans MeansOf(const std::vector<EpisodeRecord>& window) {
 }  // namespace
 
 Trainer::Trainer(const PpoOptions& options, const TaskDifficulty& task, TrainState state,
-                 VecEnv& env, ThreadPool& pool)
+                 VecEnv& env, ThreadPool& pool, Communicator& communicator)
     : options_(options),
       state_(std::move(state)),
       env_(env),
+      communicator_(communicator),
       policy_(MakePolicy<float>(state_.structure)),
       curriculum_(options, task) {
   DEX_CHECK_EQ(static_cast<std::int64_t>(state_.params.size()), policy_->layout().size());
-  if (options_.stats_window == 0) options_.stats_window = env.num_envs();
+  if (options_.stats_window == 0) options_.stats_window = env.num_envs() * communicator.size();
   shapes_ = std::make_unique<ShapeRows>(state_.table, state_.normalizers.feature,
                                         state_.normalizers.clip, state_.structure.num_categories);
   rollout_ = std::make_unique<Rollout>(options_, *policy_, env, pool);
-  learner_ = std::make_unique<PpoLearner>(options_, *policy_, pool);
-  if (!state_.environment.empty()) env_.Restore(state_.environment);
+  learner_ = std::make_unique<PpoLearner>(options_, *policy_, pool, communicator);
+  const bool resumed = !state_.environment.empty();
+  if (resumed) {
+    DEX_CHECK_EQ(static_cast<int>(state_.environment.size()), communicator.size());
+    env_.Restore(state_.environment[communicator.rank()]);
+  }
   env_.SetDifficulty(state_.curriculum.difficulty);
-  if (state_.environment.empty()) env_.ResetAll();
+  if (!resumed) env_.ResetAll();
 }
 
 Trainer::~Trainer() = default;
 
 const CurveRow& Trainer::Iterate() {
   const double start = Seconds();
+  state_.environment.clear();  // out of date from here on
+  // Ranks on other processors may round an update otherwise: they start each iteration as one.
+  communicator_.Broadcast(std::as_writable_bytes(std::span(state_.params)));
   const bool learn_moments = state_.structure.train_encoders;
-  RunningMoments obs = state_.normalizers.obs, phys = state_.normalizers.phys;
+  RunningMoments obs = EmptyMoments(env_.obs_size()), phys = EmptyMoments(env_.phys_size());
   const RolloutBatch& batch = rollout_->Collect(
       state_, shapes_->inputs(), learn_moments ? &obs : nullptr, learn_moments ? &phys : nullptr);
   const double middle = Seconds();
   const double rate = state_.learning_rate;
   const UpdateStats stats = learner_->Update(batch, shapes_->inputs(), state_);
-  state_.normalizers.obs = std::move(obs);
-  state_.normalizers.phys = std::move(phys);
+  MergeMoments(communicator_, obs, state_.normalizers.obs);
+  MergeMoments(communicator_, phys, state_.normalizers.phys);
   time_ = {middle - start, Seconds() - middle};
 
-  const std::int64_t samples = static_cast<std::int64_t>(batch.steps) * batch.envs;
+  const std::vector<EpisodeRecord> records = RecordsOfAllRanks(batch.records);
+  const std::int64_t samples =
+      static_cast<std::int64_t>(batch.steps) * batch.envs * communicator_.size();
   ++state_.iteration;
   state_.samples += samples;
-  AddRecords(batch.records);
+  AddRecords(records);
   state_.curve.push_back(MakeRow(stats, rate));
-  if (curriculum_.Update(samples, batch.records, state_.curriculum))
+  Judge();
+  if (curriculum_.Update(samples, records, state_.curriculum)) {
     env_.SetDifficulty(state_.curriculum.difficulty);
+    state_.settled = 0;
+  }
   return state_.curve.back();
 }
 
 const TrainState& Trainer::Snapshot() {
-  state_.environment = env_.Save();
+  state_.environment = communicator_.Gather(env_.Save());
   return state_;
 }
 
+void Trainer::Judge() {
+  improved_ = false;
+  if (state_.settled < options_.stats_window) return;
+  const TaskDifficulty& now = state_.curriculum.difficulty;
+  const RunScore score = {std::min(now.goal_angle, std::numbers::pi) / now.velocity_tolerance,
+                          MeansOf(state_.window).successes};
+  improved_ = score > state_.best;
+  if (improved_) state_.best = score;
+}
+
+std::vector<EpisodeRecord> Trainer::RecordsOfAllRanks(std::vector<EpisodeRecord> records) {
+  for (EpisodeRecord& record : records) record.env += env_.first_env();
+  ByteWriter own;
+  own.PutVector(records);
+  std::vector<EpisodeRecord> all;
+  for (const std::vector<std::uint8_t>& bytes : communicator_.AllGather(own.Take())) {
+    const auto part = ByteReader(bytes).GetVector<EpisodeRecord>();
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
 void Trainer::AddRecords(const std::vector<EpisodeRecord>& records) {
+  state_.settled += static_cast<std::int64_t>(records.size());
   std::vector<EpisodeRecord>& window = state_.window;
   window.insert(window.end(), records.begin(), records.end());
   const std::size_t limit = static_cast<std::size_t>(options_.stats_window);

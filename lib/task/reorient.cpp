@@ -30,6 +30,7 @@ ReorientBatch::Impl::Impl(const TaskOptions& task_options, const SimOptions& sim
       seed(run_seed),
       num_envs(simulator->num_envs()),
       joints(hand_model.num_joints()),
+      total_envs(num_envs),
       phys_size(PhysSize(task_options, hand_model)),
       pool(thread_pool),
       sim(std::move(simulator)),
@@ -69,6 +70,7 @@ ReorientBatch::ReorientBatch(const TaskOptions& task, const SimOptions& sim_opti
 ReorientBatch::~ReorientBatch() = default;
 
 int ReorientBatch::num_envs() const { return impl_->num_envs; }
+int ReorientBatch::first_env() const { return impl_->first_env; }
 int ReorientBatch::num_joints() const { return impl_->joints; }
 int ReorientBatch::obs_size() const { return 6 * impl_->joints; }
 int ReorientBatch::phys_size() const { return impl_->phys_size; }
@@ -86,9 +88,19 @@ const std::vector<double>& ReorientBatch::targets() const { return impl_->state.
 TaskOptions& ReorientBatch::mutable_options() { return impl_->options; }
 void ReorientBatch::set_auto_reset(bool on) { impl_->auto_reset = on; }
 
+void ReorientBatch::PlaceIn(int first, int total) {
+  DEX_CHECK_GE(first, 0);
+  DEX_CHECK_LE(first + num_envs(), total);
+  impl_->first_env = first;
+  impl_->total_envs = total;
+}
+
 void ReorientBatch::ResetAll() {
   const int objects = static_cast<int>(impl_->objects.size());
-  for (int env = 0; env < num_envs(); ++env) impl_->Reset(env, env % objects, env);
+  for (int env = 0; env < num_envs(); ++env) {
+    const int number = first_env() + env;
+    impl_->Reset(env, number % objects, number);
+  }
 }
 
 void ReorientBatch::Reset(int env, int object, std::uint64_t episode) {

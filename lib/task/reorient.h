@@ -139,8 +139,13 @@ class ReorientBatch {
   // addressed by the object's name and the episode's number: in whichever environment or batch it
   // runs, it is the same episode.
 
-  // Starts a new episode everywhere: environment env gets number env, and the automatic reset after
-  // it num_envs more, so numbers never repeat.
+  // Makes these environments first .. first + num_envs - 1 of a batch of `total` that is spread
+  // over processes: from the next ResetAll on they get the objects and episodes they would have
+  // there.
+  void PlaceIn(int first, int total);
+  int first_env() const;
+  // Starts a new episode everywhere: environment env gets number first_env + env, and the automatic
+  // reset after it `total` more, so numbers never repeat.
   void ResetAll();
   // Starts episode `episode` with object `object` in env (evaluation assigns these itself).
   void Reset(int env, int object, std::uint64_t episode);

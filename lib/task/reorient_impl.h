@@ -53,6 +53,7 @@ struct ReorientBatch::Impl {
   std::vector<std::uint64_t> object_keys;
   std::uint64_t seed;
   int num_envs, joints, phys_size;
+  int first_env = 0, total_envs;  // place in a batch over processes
   ThreadPool& pool;
   bool auto_reset = true;
 

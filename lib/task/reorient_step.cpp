@@ -223,7 +223,7 @@ void ReorientBatch::Impl::EndEpisodes() {
     result.last_obs.insert(result.last_obs.end(), obs, obs + width);
     result.last_phys.insert(result.last_phys.end(), phys, phys + phys_size);
     if (auto_reset)
-      Reset(env, state.object[env], state.episode[env] + num_envs);
+      Reset(env, state.object[env], state.episode[env] + total_envs);
     else
       state.live[env] = 0;
   }

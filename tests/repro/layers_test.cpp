@@ -27,7 +27,7 @@ const std::map<std::string, std::string> kOwners = {
     {"dnnl", "nn"},        {"oneapi/dnnl", "nn"},  {"pcl/", "shape"},
     {"urdf", "hand"},       {"console_bridge/", "hand"},      {"ode/", "sim/ode"},    {"ccd/", "sim/ode"},
     {"mujoco/", "sim/mujoco"}, {"hwy/", "sim/lanes"},
-    {"GL/", "render"},     {"ft2build.h", "render"}, {"freetype/", "render"}};
+    {"mpi.h", "rl"},       {"GL/", "render"},     {"ft2build.h", "render"}, {"freetype/", "render"}};
 
 std::vector<fs::path> Sources(const std::string& folder) {
   std::vector<fs::path> files;

@@ -48,6 +48,8 @@ TEST(Checkpoint, RoundTripKeepsEverything) {
   EXPECT_EQ(read.normalizers.value.count, state.normalizers.value.count);
   EXPECT_EQ(read.samples, 2 * 96 * 20);
   EXPECT_EQ(read.window.size(), state.window.size());
+  EXPECT_EQ(read.settled, state.settled);
+  EXPECT_EQ(read.best, state.best);
   EXPECT_EQ(read.curve, state.curve);
   EXPECT_EQ(read.table.names, state.table.names);
   EXPECT_EQ(read.environment, state.environment);

@@ -7,6 +7,7 @@
 
 #include "base/random.h"
 #include "rl/gae.h"
+#include "rl/rank_statistics.h"
 #include "rl/ppo.h"
 
 namespace dexremoe {
@@ -170,7 +171,7 @@ TEST(Gae, LambdaOneGivesDiscountedReturns) {
 
 TEST(Gae, NormalisedAdvantagesHaveMeanZeroAndVarianceOne) {
   std::vector<float> advantage = {1, 2, 3, 10};
-  NormalizeAdvantages(advantage);
+  NormalizeAdvantages(Alone(), advantage);
   double mean = 0, square = 0;
   for (const float a : advantage) {
     mean += a / 4;

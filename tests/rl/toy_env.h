@@ -22,19 +22,21 @@ class ToyEnv final : public VecEnv {
  public:
   static constexpr int kObjects = 4, kLength = 20;
 
-  ToyEnv(int envs, std::uint64_t seed) : seed_(seed), state_(envs) {
+  // Environments first .. first + envs - 1 of a larger task.
+  ToyEnv(int envs, std::uint64_t seed, int first = 0) : seed_(seed), first_(first), state_(envs) {
     obs_.resize(4 * envs);
     phys_.resize(2 * envs);
     object_.resize(envs);
     result_.reward.resize(envs);
     result_.success.resize(envs);
     result_.end.resize(envs);
-    for (int env = 0; env < envs; ++env) object_[env] = env % kObjects;
+    for (int env = 0; env < envs; ++env) object_[env] = (first + env) % kObjects;
   }
 
   static double Sign(int object) { return object % 2 == 0 ? 1 : -1; }
 
   int num_envs() const override { return static_cast<int>(state_.size()); }
+  int first_env() const override { return first_; }
   int obs_size() const override { return 4; }
   int phys_size() const override { return 2; }
   int num_actions() const override { return 2; }
@@ -87,7 +89,7 @@ class ToyEnv final : public VecEnv {
     const std::uint64_t episode = s.episode;
     s = {};
     s.episode = episode + 1;
-    Rng rng(seed_, Stream::kReset, {static_cast<std::uint64_t>(env), episode});
+    Rng rng(seed_, Stream::kReset, {static_cast<std::uint64_t>(first_ + env), episode});
     for (int i = 0; i < 2; ++i) {
       s.x[i] = rng.Uniform(-1, 1);
       s.goal[i] = rng.Uniform(-1, 1);
@@ -139,6 +141,7 @@ class ToyEnv final : public VecEnv {
   }
 
   std::uint64_t seed_;
+  int first_;
   std::vector<State> state_;
   std::vector<float> obs_, phys_;
   std::vector<int> object_;

@@ -1,0 +1,25 @@
+// The learning curve for TensorBoard, written as the training goes.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "io/event_file.h"
+#include "rl/trainer.h"
+
+namespace dexremoe {
+
+class CurveEvents {
+ public:
+  // Continues the curve in `folder` after `samples` environment steps, which are TensorBoard's
+  // steps; what a killed run wrote beyond them is cut off. An empty folder writes nothing.
+  CurveEvents(const std::string& folder, std::int64_t samples);
+
+  // `samples` of the iteration, for the rates (samples/s).
+  void Add(const CurveRow& row, const IterationTime& time, double samples);
+
+ private:
+  std::unique_ptr<EventFile> file_;
+};
+
+}  // namespace dexremoe

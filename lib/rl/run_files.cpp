@@ -1,0 +1,38 @@
+#include "rl/run_files.h"
+
+#include <filesystem>
+
+#include "rl/checkpoint.h"
+
+namespace dexremoe {
+
+RunFiles::RunFiles(RunPaths paths, Provenance provenance, double checkpoint_minutes,
+                   const TrainState& start)
+    : paths_(std::move(paths)),
+      provenance_(std::move(provenance)),
+      period_(60 * checkpoint_minutes),
+      curve_(paths_.curve, start.curve),
+      events_(paths_.tensorboard, start.samples),
+      last_(Clock::now()) {
+  std::error_code ignored;
+  if (start.best == RunScore()) std::filesystem::remove(paths_.best, ignored);
+}
+
+void RunFiles::Add(const Trainer& trainer, double samples) {
+  const CurveRow& row = trainer.state().curve.back();
+  curve_.Add(row, trainer.time(), samples);
+  events_.Add(row, trainer.time(), samples);
+  if (trainer.improved()) best_ = trainer.state();
+}
+
+bool RunFiles::Due() const { return Clock::now() - last_ > period_; }
+
+void RunFiles::Save(const TrainState& last) {
+  if (best_) WriteCheckpoint(paths_.best, *best_, provenance_);
+  best_.reset();
+  WriteCheckpoint(paths_.out, last, provenance_);
+  curve_.Write();
+  last_ = Clock::now();
+}
+
+}  // namespace dexremoe
