@@ -149,5 +149,22 @@ TEST_P(SoftFinger, ATorqueBelowTheBoundHoldsAndOneAboveItTurns) {
   EXPECT_GT(std::abs(above), 0.3);
 }
 
+TEST_P(SoftFinger, GraspsHoldTheCubeBelowTheSuccessThresholds) {
+  constexpr int kTries = 24;
+  EnvPhysics physics;
+  physics.torsional_friction = kTorsion;
+  scenes::GraspScene scene(Options(GetParam().substeps.back()), kTries, 1, physics);
+  scene.Close(50);
+  scene.Release();
+  for (int step = 0; step < 60; ++step) scene.rig->Step(scene.targets);
+  int quiet = 0;
+  for (int env = 0; env < kTries; ++env) {
+    const EnvState state = scene.rig->GetState(env);
+    quiet += scene.Holds(env) && state.v.norm() < 0.04 && state.w.norm() < 0.5;
+  }
+  std::printf("%d of %d grasps hold quietly for a second\n", quiet, kTries);
+  EXPECT_GE(quiet, 20);
+}
+
 }  // namespace
 }  // namespace dexremoe
