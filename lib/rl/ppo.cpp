@@ -6,8 +6,8 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "base/random.h"
+#include "nn/kernels.h"
 #include "rl/gae.h"
-#include "rl/ppo_loss.h"
 
 namespace dexremoe {
 namespace {
@@ -60,6 +60,7 @@ PpoLearner::PpoLearner(const PpoOptions& options, const Policy<float>& policy, T
       policy_(policy),
       pool_(pool),
       trainable_(policy.layout(), policy.trainable()),
+      follow_previous_(options.kl_reference == "previous"),
       scratch_(pool.workers()) {}
 
 UpdateStats PpoLearner::Update(const RolloutBatch& batch, const ShapeInputs<float>& shapes,
@@ -109,11 +110,18 @@ void PpoLearner::Prepare(const RolloutBatch& batch, TrainState& state) {
   NormalizeValues(moments, target_.data(), rows);
   NormalizeAdvantages(advantage_);
   reference_mean_ = batch.mean;
-  reference_log_std_.resize(rows * actions);
-  for (std::int64_t r = 0; r < rows; ++r)
-    std::copy_n(batch.log_std.begin(), actions, reference_log_std_.begin() + r * actions);
+  reference_spread_.assign(rows, 0);
+  spreads_.assign(1, Spread<float>(actions, batch.log_std.data()));
   order_.resize(rows);
   trainable_.Gather(state.params, values_);
+}
+
+void PpoLearner::AddSpread(const TrainState& state) {
+  const ParamBlock& block = policy_.layout().block(policy_.log_std_block());
+  spreads_.emplace_back(policy_.structure().num_actions, state.params.data() + block.offset);
+  spread_kl_.clear();
+  for (const Spread<float>& before : spreads_)
+    spread_kl_.push_back(KlOfSpreads(spreads_.back(), before));
 }
 
 void PpoLearner::Minibatch(const RolloutBatch& batch, const ShapeInputs<float>& shapes,
@@ -122,6 +130,7 @@ void PpoLearner::Minibatch(const RolloutBatch& batch, const ShapeInputs<float>& 
   // Not initialised: frozen ranges are never touched and so take no memory.
   while (static_cast<int>(block_grads_.size()) < blocks)
     block_grads_.push_back(std::make_unique_for_overwrite<float[]>(policy_.layout().size()));
+  AddSpread(state);
   std::vector<BlockSums> sums(blocks);
   pool_.ParallelFor(blocks, [&](int block, int worker) {
     const int begin = block * options_.block_rows;
@@ -163,44 +172,40 @@ void PpoLearner::Block(const RolloutBatch& batch, const ShapeInputs<float>& shap
   scratch.dmean.assign(scratch.mean.size(), 0.0f);
   scratch.dvalue.assign(count, 0.0f);
   sums.dlog_std.assign(actions, 0.0);
-  const float* log_std =
-      state.params.data() + policy_.layout().block(policy_.log_std_block()).offset;
   for (int i = 0; i < count; ++i)
-    RowLoss(batch, rows[i], log_std, static_cast<float>(row_weight),
-            scratch.mean.data() + i * actions, scratch.value[i], scratch.dmean.data() + i * actions,
-            &scratch.dvalue[i], sums);
+    RowLoss(batch, rows[i], static_cast<float>(row_weight), scratch.mean.data() + i * actions,
+            scratch.value[i], scratch.dmean.data() + i * actions, &scratch.dvalue[i], sums);
+  for (double& d : sums.dlog_std) d -= count * row_weight * options_.entropy_coef;
   policy_.Backward(state.params.data(), shapes, in, scratch.work, scratch.dmean.data(),
                    scratch.dvalue.data(), grads);
 }
 
 // loss = surrogate + 0.5 critic_coef value + bounds_coef bounds - entropy_coef entropy, mean over
 // the minibatch (rl_games).
-void PpoLearner::RowLoss(const RolloutBatch& batch, int row, const float* log_std, float row_weight,
-                         const float* mean, float value, float* dmean, float* dvalue,
-                         BlockSums& sums) {
+void PpoLearner::RowLoss(const RolloutBatch& batch, int row, float row_weight, const float* mean,
+                         float value, float* dmean, float* dvalue, BlockSums& sums) {
   const int actions = policy_.structure().num_actions;
+  const Spread<float>& spread = spreads_.back();
   const float* action = batch.action.data() + static_cast<std::size_t>(row) * actions;
-  const auto surrogate =
-      Surrogate(LogProbability(actions, action, mean, log_std), batch.log_prob[row],
-                advantage_[row], static_cast<float>(options_.clip));
-  AddLogProbabilityGradient(actions, action, mean, log_std, row_weight * surrogate.dloss_dlogp,
-                            dmean, sums.dlog_std.data());
+  const auto surrogate = Surrogate(LogProbability(spread, action, mean), batch.log_prob[row],
+                                   advantage_[row], static_cast<float>(options_.clip));
+  AddLogProbabilityGradient(spread, action, mean, row_weight * surrogate.dloss_dlogp, dmean,
+                            sums.dlog_std.data());
   const auto fit = SquaredValueLoss(value, old_value_[row], target_[row],
                                     static_cast<float>(options_.clip), options_.clip_value);
   *dvalue = row_weight * static_cast<float>(0.5 * options_.critic_coef) * fit.dloss_dvalue;
   BoundsLoss(actions, mean, static_cast<float>(options_.bounds),
              row_weight * static_cast<float>(options_.bounds_coef), dmean);
-  for (double& d : sums.dlog_std) d -= row_weight * options_.entropy_coef;
   sums.policy_loss += surrogate.loss;
   sums.value_loss += fit.loss;
   sums.clipped += surrogate.clipped;
 
   float* reference_mean = reference_mean_.data() + static_cast<std::size_t>(row) * actions;
-  float* reference_log_std = reference_log_std_.data() + static_cast<std::size_t>(row) * actions;
-  sums.kl += KlDivergence(actions, mean, log_std, reference_mean, reference_log_std);
-  if (options_.kl_reference != "previous") return;
+  int& reference = reference_spread_[row];
+  sums.kl += spread_kl_[reference] + KlOfMeans(mean, reference_mean, spreads_[reference]);
+  if (!follow_previous_) return;
   std::copy_n(mean, actions, reference_mean);
-  std::copy_n(log_std, actions, reference_log_std);
+  reference = static_cast<int>(spreads_.size()) - 1;
 }
 
 void PpoLearner::ReduceGradients(int blocks, const std::vector<BlockSums>& sums) {
@@ -214,7 +219,7 @@ void PpoLearner::ReduceGradients(int blocks, const std::vector<BlockSums>& sums)
       std::fill(to + begin, to + end, 0.0f);
       for (int block = 0; block < blocks; ++block) {
         const float* from = block_grads_[block].get() + range.offset;
-        for (std::int64_t i = begin; i < end; ++i) to[i] += from[i];
+        AddTo(end - begin, from + begin, to + begin);
       }
     });
   }

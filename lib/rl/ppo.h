@@ -6,6 +6,7 @@
 
 #include "base/thread_pool.h"
 #include "policy/policy.h"
+#include "rl/ppo_loss.h"
 #include "rl/ppo_options.h"
 #include "rl/rollout.h"
 #include "rl/train_state.h"
@@ -55,8 +56,10 @@ class PpoLearner {
              Scratch& scratch);
   PolicyRows<float> Gather(const RolloutBatch& batch, const int* rows, int count,
                            Scratch& scratch) const;
-  void RowLoss(const RolloutBatch& batch, int row, const float* log_std, float row_weight,
-               const float* mean, float value, float* dmean, float* dvalue, BlockSums& sums);
+  void RowLoss(const RolloutBatch& batch, int row, float row_weight, const float* mean, float value,
+               float* dmean, float* dvalue, BlockSums& sums);
+  // Makes the spread at hand the last of spreads_.
+  void AddSpread(const TrainState& state);
   void ReduceGradients(int blocks, const std::vector<BlockSums>& sums);
   void CheckFinite(const std::vector<float>& values, const char* what, const TrainState& state);
 
@@ -64,10 +67,16 @@ class PpoLearner {
   const Policy<float>& policy_;
   ThreadPool& pool_;
   TrainableSet trainable_;
+  bool follow_previous_;  // kl_reference
   // Of the batch at hand.
-  std::vector<float> advantage_, target_, old_value_;      // [R]; the last two normalised
-  std::vector<float> reference_mean_, reference_log_std_;  // [R, A], for the KL divergence
-  std::vector<int> order_;                                 // [R]
+  std::vector<float> advantage_, target_, old_value_;  // [R]; the last two normalised
+  std::vector<int> order_;                             // [R]
+  // For the KL divergence: the spreads of the rollout and of each optimiser step since, their part
+  // of the divergence of the last one from them, and each row's reference.
+  std::vector<Spread<float>> spreads_;
+  std::vector<float> spread_kl_;
+  std::vector<float> reference_mean_;  // [R, A]
+  std::vector<int> reference_spread_;  // [R], into spreads_
   // Work.
   std::vector<std::unique_ptr<float[]>> block_grads_;
   std::vector<Scratch> scratch_;

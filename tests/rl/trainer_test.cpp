@@ -176,11 +176,14 @@ TEST(Trainer, GateLearnsWhichExpertSuitsWhichObject) {
   for (const ParamBlock& block : policy->layout().blocks())
     if (block.name.starts_with("actor/mean"))
       for (std::int64_t i = 0; i < block.size(); ++i) experts[0].params[block.offset + i] *= -1;
+  // Slow and steady: at an adaptive rate up to 1e-2 the gate settles on chance in two seeds of
+  // three.
   PpoOptions ppo = ToyPpo();
-  ppo.learning_rate = 1e-2;
+  ppo.learning_rate = 1e-3;
+  ppo.adaptive = false;
   ToyRun gate(StartGate(ToyStart(ppo), ToyPolicy(), experts, {"a.h5", "b.h5"}), 2, ppo);
   const double before = ReturnOf(gate.trainer.state());
-  gate.Iterate(40);
+  gate.Iterate(160);
   const double after = ReturnOf(gate.trainer.state());
   EXPECT_GT(after, before + 0.7 * (ReturnOf(base.trainer.state()) - before));
   const ShapeRows shapes(gate.trainer.state().table, gate.trainer.state().normalizers.feature, 5,
