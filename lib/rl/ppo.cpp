@@ -59,6 +59,7 @@ PpoLearner::PpoLearner(const PpoOptions& options, const Policy<float>& policy, T
     : options_(options),
       policy_(policy),
       pool_(pool),
+      net_(MakePolicyNet(policy.structure(), pool.workers())),
       trainable_(policy.layout(), policy.trainable()),
       follow_previous_(options.kl_reference == "previous"),
       scratch_(pool.workers()) {}
@@ -131,12 +132,13 @@ void PpoLearner::Minibatch(const RolloutBatch& batch, const ShapeInputs<float>& 
   while (static_cast<int>(block_grads_.size()) < blocks)
     block_grads_.push_back(std::make_unique_for_overwrite<float[]>(policy_.layout().size()));
   AddSpread(state);
+  net_->Load(state.params);
   std::vector<BlockSums> sums(blocks);
   pool_.ParallelFor(blocks, [&](int block, int worker) {
     const int begin = block * options_.block_rows;
     const int size = std::min(options_.block_rows, count - begin);
-    Block(batch, shapes, rows + begin, size, 1.0 / count, state, block_grads_[block].get(),
-          sums[block], scratch_[worker]);
+    Block(worker, batch, shapes, rows + begin, size, 1.0 / count, block_grads_[block].get(),
+          sums[block]);
   });
   ReduceGradients(blocks, sums);
   for (const BlockSums& s : sums) {
@@ -158,17 +160,17 @@ PolicyRows<float> PpoLearner::Gather(const RolloutBatch& batch, const int* rows,
           policy_.frozen_size() > 0 ? scratch.frozen.data() : nullptr};
 }
 
-void PpoLearner::Block(const RolloutBatch& batch, const ShapeInputs<float>& shapes, const int* rows,
-                       int count, double row_weight, const TrainState& state, float* grads,
-                       BlockSums& sums, Scratch& scratch) {
+void PpoLearner::Block(int worker, const RolloutBatch& batch, const ShapeInputs<float>& shapes,
+                       const int* rows, int count, double row_weight, float* grads,
+                       BlockSums& sums) {
+  Scratch& scratch = scratch_[worker];
   const int actions = policy_.structure().num_actions;
   for (const TrainableSet::Range& range : trainable_.ranges())
     std::fill_n(grads + range.offset, range.size, 0.0f);
   const PolicyRows<float> in = Gather(batch, rows, count, scratch);
   scratch.mean.resize(static_cast<std::size_t>(count) * actions);
   scratch.value.resize(count);
-  policy_.Forward(state.params.data(), shapes, in, scratch.work, scratch.mean.data(),
-                  scratch.value.data());
+  net_->Forward(worker, shapes, in, scratch.mean.data(), scratch.value.data());
   scratch.dmean.assign(scratch.mean.size(), 0.0f);
   scratch.dvalue.assign(count, 0.0f);
   sums.dlog_std.assign(actions, 0.0);
@@ -176,8 +178,7 @@ void PpoLearner::Block(const RolloutBatch& batch, const ShapeInputs<float>& shap
     RowLoss(batch, rows[i], static_cast<float>(row_weight), scratch.mean.data() + i * actions,
             scratch.value[i], scratch.dmean.data() + i * actions, &scratch.dvalue[i], sums);
   for (double& d : sums.dlog_std) d -= count * row_weight * options_.entropy_coef;
-  policy_.Backward(state.params.data(), shapes, in, scratch.work, scratch.dmean.data(),
-                   scratch.dvalue.data(), grads);
+  net_->Backward(worker, shapes, in, scratch.dmean.data(), scratch.dvalue.data(), grads);
 }
 
 // loss = surrogate + 0.5 critic_coef value + bounds_coef bounds - entropy_coef entropy, mean over

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/thread_pool.h"
-#include "policy/policy.h"
+#include "policy/policy_net.h"
 #include "rl/ppo_loss.h"
 #include "rl/ppo_options.h"
 #include "rl/rollout.h"
@@ -44,16 +44,14 @@ class PpoLearner {
   };
   // Rows of a block gathered from the batch, and what the policy makes of them. Per worker.
   struct Scratch {
-    Workspace<float> work;
     std::vector<float> obs, phys, frozen, mean, value, dmean, dvalue;
     std::vector<int> object;
   };
   void Prepare(const RolloutBatch& batch, TrainState& state);
   void Minibatch(const RolloutBatch& batch, const ShapeInputs<float>& shapes, const int* rows,
                  int count, TrainState& state, BlockSums& total);
-  void Block(const RolloutBatch& batch, const ShapeInputs<float>& shapes, const int* rows,
-             int count, double row_weight, const TrainState& state, float* grads, BlockSums& sums,
-             Scratch& scratch);
+  void Block(int worker, const RolloutBatch& batch, const ShapeInputs<float>& shapes,
+             const int* rows, int count, double row_weight, float* grads, BlockSums& sums);
   PolicyRows<float> Gather(const RolloutBatch& batch, const int* rows, int count,
                            Scratch& scratch) const;
   void RowLoss(const RolloutBatch& batch, int row, float row_weight, const float* mean, float value,
@@ -66,6 +64,7 @@ class PpoLearner {
   PpoOptions options_;
   const Policy<float>& policy_;
   ThreadPool& pool_;
+  std::unique_ptr<PolicyNet> net_;
   TrainableSet trainable_;
   bool follow_previous_;  // kl_reference
   // Of the batch at hand.
