@@ -1,30 +1,12 @@
-#include <dlfcn.h>
 #include <dnnl.h>
 
 #include <Eigen/Core>
 
 #include "base/check.h"
 #include "nn/layers.h"
+#include "nn/one_thread.h"
 
 namespace dexremoe {
-namespace {
-
-// Debian's oneDNN splits every product over an OpenMP team. Our callers already run on every core
-// through ThreadPool, so each calling thread tells OpenMP once to keep to itself: the team size is
-// a setting of the calling thread, not of the process. The function is looked up at run time
-// because the build does not link libgomp itself; oneDNN brings it in.
-void KeepToOneThread() {
-  thread_local const bool done = [] {
-    using SetNumThreads = void (*)(int);
-    const auto set = reinterpret_cast<SetNumThreads>(dlsym(RTLD_DEFAULT, "omp_set_num_threads"));
-    if (set != nullptr) set(1);
-    return true;
-  }();
-  (void)done;
-}
-
-}  // namespace
-
 template <>
 void Gemm<float>(bool transpose_a, bool transpose_b, std::int64_t m, std::int64_t n, std::int64_t k,
                  float alpha, const float* a, std::int64_t lda, const float* b, std::int64_t ldb,

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "base/check.h"
-#include "nn/kernels.h"
 #include "nn/layers.h"
 #include "nn/normalizer.h"
 
@@ -14,22 +13,6 @@ namespace {
 
 // Rows that go through all layers together: their activations stay in the processor's cache.
 constexpr std::int64_t kBlockRows = 512;
-
-template <typename T>
-void Activate(Activation activation, std::int64_t count, T* y) {
-  if (activation == Activation::kElu)
-    EluForward<T>(count, y, y);
-  else
-    ReluForward<T>(count, y, y);
-}
-
-template <typename T>
-void ActivateBackward(Activation activation, std::int64_t count, const T* y, T* dy) {
-  if (activation == Activation::kElu)
-    EluBackward<T>(count, y, dy, dy);
-  else
-    ReluBackward<T>(count, y, dy, dy);
-}
 
 }  // namespace
 
@@ -75,13 +58,8 @@ void Mlp::ForwardBlock(const T* params, std::int64_t n, std::int64_t row, std::i
   for (int layer = 0; layer < layers(); ++layer) {
     const int columns = widths_[layer + 1];
     T* y = layer_output + row * columns;
-    Gemm<T>(false, true, rows, columns, widths_[layer], 1, input, widths_[layer],
-            params + weight_offset_[layer], widths_[layer], 0, y, columns);
-    const bool activate = layer + 1 < layers() || activate_end_;
-    for (std::int64_t i = 0; i < rows; ++i) {  // one row at a time: both passes hit the same cache
-      AddTo(columns, params + bias_offset_[layer], y + i * columns);
-      if (activate) Activate<T>(activation_, columns, y + i * columns);
-    }
+    LinearActivate<T>(After(layer), rows, widths_[layer], columns, input,
+                      params + weight_offset_[layer], params + bias_offset_[layer], y);
     input = y;
     layer_output += n * columns;
   }
@@ -89,30 +67,30 @@ void Mlp::ForwardBlock(const T* params, std::int64_t n, std::int64_t row, std::i
 
 template <typename T>
 void Mlp::Backward(const T* params, std::int64_t n, const T* x, const T* activations, T* dy, T* dx,
-                   T* grads, T* scratch) const {
+                   Wide<T>* grads, T* scratch, std::int64_t first) const {
   for (std::int64_t row = 0; row < n; row += kBlockRows)
     BackwardBlock<T>(params, n, row, std::min(kBlockRows, n - row), x, activations,
-                     dy + row * outputs(), dx != nullptr ? dx + row * inputs() : nullptr, grads,
-                     scratch);
+                     dy + row * outputs(), dx != nullptr ? dx + row * (inputs() - first) : nullptr,
+                     grads, scratch, first);
 }
 
 // dy and dx are the block's.
 template <typename T>
 void Mlp::BackwardBlock(const T* params, std::int64_t n, std::int64_t row, std::int64_t rows,
-                        const T* x, const T* activations, T* dy, T* dx, T* grads,
-                        T* scratch) const {
+                        const T* x, const T* activations, T* dy, T* dx, Wide<T>* grads, T* scratch,
+                        std::int64_t first) const {
   const T* layer_output = activations + ActivationSize(n);  // one past the last layer's
   T* const halves[2] = {scratch, scratch + ScratchSize(n) / 2};
   for (int layer = layers() - 1; layer >= 0; --layer) {
     const int inputs = widths_[layer], outputs = widths_[layer + 1];
     layer_output -= n * outputs;
-    if (layer + 1 < layers() || activate_end_)
-      ActivateBackward<T>(activation_, rows * outputs, layer_output + row * outputs, dy);
+    ActivationBackward<T>(After(layer), rows * outputs, layer_output + row * outputs, dy, dy);
     const T* input = (layer > 0 ? layer_output - n * inputs : x) + row * inputs;
     T* dinput = layer > 0 ? halves[layer % 2] : dx;
     LinearBackward<T>(rows, inputs, outputs, input, params + weight_offset_[layer], dy, dinput,
                       grads != nullptr ? grads + weight_offset_[layer] : nullptr,
-                      grads != nullptr ? grads + bias_offset_[layer] : nullptr);
+                      grads != nullptr ? grads + bias_offset_[layer] : nullptr,
+                      layer > 0 ? 0 : first);
     dy = dinput;
   }
 }
@@ -157,15 +135,16 @@ void Mlp::NormalizeOnData(std::int64_t n, const float* x, float* params) const {
         weight[j * wide + i] = static_cast<float>(weight[j * wide + i] * scale);
       bias[j] = static_cast<float>(-moments.mean[j] * scale);
     }
-    LinearForward<float>(n, wide, columns, input.data(), weight, bias, output.data());
-    Activate<float>(activation_, n * columns, output.data());
+    LinearActivate<float>(activation_, n, wide, columns, input.data(), weight, bias, output.data());
     input.swap(output);
   }
 }
 
-#define DEX_INSTANTIATE(T)                                                    \
-  template const T* Mlp::Forward(const T*, std::int64_t, const T*, T*) const; \
-  template void Mlp::Backward(const T*, std::int64_t, const T*, const T*, T*, T*, T*, T*) const;
+#define DEX_INSTANTIATE(T)                                                                      \
+  template const T* Mlp::Forward(const T*, std::int64_t, const T*, T*) const;                   \
+  template void Mlp::Backward(const T*, std::int64_t, const T*, const T*, T*, T*, Wide<T>*, T*, \
+                              std::int64_t) const;
+DEX_INSTANTIATE(BFloat16)
 DEX_INSTANTIATE(float)
 DEX_INSTANTIATE(double)
 #undef DEX_INSTANTIATE

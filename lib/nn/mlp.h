@@ -6,11 +6,10 @@
 #include <vector>
 
 #include "base/random.h"
+#include "nn/layers.h"
 #include "nn/params.h"
 
 namespace dexremoe {
-
-enum class Activation { kElu, kRelu };
 
 class Mlp {
  public:
@@ -30,10 +29,11 @@ class Mlp {
   // activations [ActivationSize(n)] keeps every layer's output; returns the last one [n, outputs].
   template <typename T>
   const T* Forward(const T* params, std::int64_t n, const T* x, T* activations) const;
-  // dy [n, outputs] is overwritten. dx [n, inputs] may be null; grads may be null (frozen).
+  // dy [n, outputs] is overwritten. dx [n, inputs - first] is the gradient of the inputs from
+  // `first` on; it may be null. grads may be null (frozen).
   template <typename T>
   void Backward(const T* params, std::int64_t n, const T* x, const T* activations, T* dy, T* dx,
-                T* grads, T* scratch) const;
+                Wide<T>* grads, T* scratch, std::int64_t first = 0) const;
 
   // PyTorch's default for linear layers: U(-1/sqrt(c), 1/sqrt(c)) for weights; biases zero.
   // The last layer's weights are multiplied by `last_scale`.
@@ -56,7 +56,12 @@ class Mlp {
                     const T* x, T* activations) const;
   template <typename T>
   void BackwardBlock(const T* params, std::int64_t n, std::int64_t row, std::int64_t rows,
-                     const T* x, const T* activations, T* dy, T* dx, T* grads, T* scratch) const;
+                     const T* x, const T* activations, T* dy, T* dx, Wide<T>* grads, T* scratch,
+                     std::int64_t first) const;
+  // What follows a layer.
+  Activation After(int layer) const {
+    return layer + 1 < layers() || activate_end_ ? activation_ : Activation::kNone;
+  }
   // Weights U(-bound, bound), zero biases.
   void InitializeLayer(Rng& rng, int layer, double bound, float* params) const;
 

@@ -8,13 +8,17 @@ namespace dexremoe {
 
 template <typename T>
 struct ActorPass {
-  T* input;  // [o, z] [n, obs_size + z_size]
-  T* trunk;  // activations
+  T* input;        // [o, z] [n, obs_size + z_size]
+  T* trunk;        // activations
+  T* head_weight;  // both heads as one layer [A + 1, hidden], the value's row last
+  T* head_bias;    // [A + 1]
+  Wide<T>* head;   // [n, A + 1]
   // Backward only.
+  T* dhead;               // [n, A + 1]
+  Wide<T>* dhead_weight;  // as head_weight
+  Wide<T>* dhead_bias;
   T* dhidden;  // [n, hidden]
-  T* dvalue_hidden;
-  T* dhead;   // [n, A + 1]: copies of dmean and dvalue, which the layers overwrite
-  T* dinput;  // as input
+  T* dz;       // [n, z_size]
   T* scratch;
 };
 
@@ -27,18 +31,25 @@ class Actor {
 
   template <typename T>
   ActorPass<T> Carve(std::int64_t n, Workspace<T>& work) const;
-  // z [n, z_size]; mean [n, A] and value [n] are set.
+  // z [n, z_size], stored or wide; mean [n, A] and value [n] are set.
+  template <typename T, typename Z>
+  void Forward(const T* params, const PolicyRows<Wide<T>>& rows, const Z* z, ActorPass<T>& pass,
+               Wide<T>* mean, Wide<T>* value) const;
+  // Returns the gradient of z [n, z_size], or null when it is not wanted.
   template <typename T>
-  void Forward(const T* params, const PolicyRows<T>& rows, const T* z, ActorPass<T>& pass, T* mean,
-               T* value) const;
-  // dz [n, z_size] may be null.
-  template <typename T>
-  void Backward(const T* params, const PolicyRows<T>& rows, ActorPass<T>& pass, const T* dmean,
-                const T* dvalue, T* dz, T* grads) const;
+  T* Backward(const T* params, const PolicyRows<Wide<T>>& rows, ActorPass<T>& pass,
+              const Wide<T>* dmean, const Wide<T>* dvalue, bool want_dz, Wide<T>* grads) const;
 
  private:
-  int obs_size_, z_size_;
+  template <typename T>
+  void GatherHeads(const T* params, ActorPass<T>& pass) const;
+  template <typename T>
+  void HeadsBackward(std::int64_t n, const T* hidden, ActorPass<T>& pass, const Wide<T>* dmean,
+                     const Wide<T>* dvalue, Wide<T>* grads) const;
+
+  int obs_size_, z_size_, hidden_, actions_;
   Mlp trunk_, mean_, value_;
+  std::int64_t mean_weight_, mean_bias_, value_weight_, value_bias_;  // offsets of the heads
 };
 
 }  // namespace dexremoe

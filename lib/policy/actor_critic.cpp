@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "nn/kernels.h"
+
 namespace dexremoe {
 
 template <typename T>
@@ -30,46 +32,45 @@ int ActorCritic<T>::frozen_size() const {
 }
 
 template <typename T>
-void ActorCritic<T>::Freeze(const T* params, const ShapeInputs<T>& shapes,
-                            const PolicyRows<T>& rows, Workspace<T>& work, T* frozen) const {
+void ActorCritic<T>::Freeze(const T* params, const ShapeInputs<Wide<T>>& shapes,
+                            const PolicyRows<Wide<T>>& rows, Workspace<T>& work,
+                            Wide<T>* frozen) const {
   if (frozen_size() == 0) return;
   work.Reset();
   EncoderPass<T> pass = encoder_.Carve(shapes.objects, rows.n, work);
   encoder_.ShapeForward(params, shapes, pass);
-  std::copy_n(encoder_.Forward(params, rows, pass), rows.n * frozen_size(), frozen);
+  Cast(rows.n * frozen_size(), encoder_.Forward(params, rows, pass), frozen);
 }
 
 template <typename T>
-void ActorCritic<T>::Forward(const T* params, const ShapeInputs<T>& shapes,
-                             const PolicyRows<T>& rows, Workspace<T>& work, T* mean,
-                             T* value) const {
+void ActorCritic<T>::Forward(const T* params, const ShapeInputs<Wide<T>>& shapes,
+                             const PolicyRows<Wide<T>>& rows, Workspace<T>& work, Wide<T>* mean,
+                             Wide<T>* value) const {
   work.Reset();
   ActorPass<T> actor = actor_.Carve(rows.n, work);
-  const T* z = rows.frozen;
-  if (z == nullptr) {
-    EncoderPass<T> encoder = encoder_.Carve(shapes.objects, rows.n, work);
-    encoder_.ShapeForward(params, shapes, encoder);
-    z = encoder_.Forward(params, rows, encoder);
-  }
-  actor_.Forward(params, rows, z, actor, mean, value);
-}
-
-template <typename T>
-void ActorCritic<T>::Backward(const T* params, const ShapeInputs<T>& shapes,
-                              const PolicyRows<T>& rows, Workspace<T>& work, const T* dmean,
-                              const T* dvalue, T* grads) const {
-  work.Reset();
-  ActorPass<T> actor = actor_.Carve(rows.n, work);
-  if (!this->structure_.train_encoders) {
-    actor_.Backward(params, rows, actor, dmean, dvalue, static_cast<T*>(nullptr), grads);
+  if (rows.frozen != nullptr) {
+    actor_.Forward(params, rows, rows.frozen, actor, mean, value);
     return;
   }
   EncoderPass<T> encoder = encoder_.Carve(shapes.objects, rows.n, work);
-  T* dz = work.Take(rows.n * this->structure_.z_size);
-  actor_.Backward(params, rows, actor, dmean, dvalue, dz, grads);
+  encoder_.ShapeForward(params, shapes, encoder);
+  actor_.Forward(params, rows, encoder_.Forward(params, rows, encoder), actor, mean, value);
+}
+
+template <typename T>
+void ActorCritic<T>::Backward(const T* params, const ShapeInputs<Wide<T>>& shapes,
+                              const PolicyRows<Wide<T>>& rows, Workspace<T>& work,
+                              const Wide<T>* dmean, const Wide<T>* dvalue, Wide<T>* grads) const {
+  work.Reset();
+  ActorPass<T> actor = actor_.Carve(rows.n, work);
+  const bool train_encoders = this->structure_.train_encoders;
+  T* dz = actor_.Backward(params, rows, actor, dmean, dvalue, train_encoders, grads);
+  if (!train_encoders) return;
+  EncoderPass<T> encoder = encoder_.Carve(shapes.objects, rows.n, work);
   encoder_.Backward(params, shapes, rows, encoder, dz, grads);
 }
 
+template class ActorCritic<BFloat16>;
 template class ActorCritic<float>;
 template class ActorCritic<double>;
 

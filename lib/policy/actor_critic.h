@@ -16,12 +16,13 @@ class ActorCritic final : public Policy<T> {
   void Initialize(std::uint64_t seed, double log_std, double mean_scale,
                   float* params) const override;
   int frozen_size() const override;
-  void Freeze(const T* params, const ShapeInputs<T>& shapes, const PolicyRows<T>& rows,
-              Workspace<T>& work, T* frozen) const override;
-  void Forward(const T* params, const ShapeInputs<T>& shapes, const PolicyRows<T>& rows,
-               Workspace<T>& work, T* mean, T* value) const override;
-  void Backward(const T* params, const ShapeInputs<T>& shapes, const PolicyRows<T>& rows,
-                Workspace<T>& work, const T* dmean, const T* dvalue, T* grads) const override;
+  void Freeze(const T* params, const ShapeInputs<Wide<T>>& shapes, const PolicyRows<Wide<T>>& rows,
+              Workspace<T>& work, Wide<T>* frozen) const override;
+  void Forward(const T* params, const ShapeInputs<Wide<T>>& shapes, const PolicyRows<Wide<T>>& rows,
+               Workspace<T>& work, Wide<T>* mean, Wide<T>* value) const override;
+  void Backward(const T* params, const ShapeInputs<Wide<T>>& shapes,
+                const PolicyRows<Wide<T>>& rows, Workspace<T>& work, const Wide<T>* dmean,
+                const Wide<T>* dvalue, Wide<T>* grads) const override;
 
  private:
   Encoder encoder_;

@@ -9,13 +9,15 @@ namespace dexremoe {
 // Activations of one pass, inside a Workspace.
 template <typename T>
 struct EncoderPass {
+  T* feature;     // descriptors [K, feature_size]
   T* cloud;       // activations of mu_pc over the K objects
   T* shape;       // e_shape [K, shape_size]
   T* input;       // e = [e_phys, e_shape] [n, phys_size + shape_size]
   T* extrinsics;  // activations of mu_e over the n rows
   // Backward only.
-  T* dinput;  // as input
-  T* df;      // [K, f_size]
+  T* dshape;    // of input, from e_shape on [n, shape_size]
+  Wide<T>* df;  // [K, f_size], summed over rows
+  T* df_stored;
   T* cloud_scratch;
   T* extrinsics_scratch;
 };
@@ -31,17 +33,18 @@ class Encoder {
   EncoderPass<T> Carve(std::int64_t objects, std::int64_t n, Workspace<T>& work) const;
   // Fills pass.shape: f = mu_pc(p) beside the one-hot category.
   template <typename T>
-  void ShapeForward(const T* params, const ShapeInputs<T>& shapes, EncoderPass<T>& pass) const;
+  void ShapeForward(const T* params, const ShapeInputs<Wide<T>>& shapes,
+                    EncoderPass<T>& pass) const;
   // Needs ShapeForward; returns z [n, z_size].
   template <typename T>
-  const T* Forward(const T* params, const PolicyRows<T>& rows, EncoderPass<T>& pass) const;
+  const T* Forward(const T* params, const PolicyRows<Wide<T>>& rows, EncoderPass<T>& pass) const;
   // dz [n, z_size] is overwritten.
   template <typename T>
-  void Backward(const T* params, const ShapeInputs<T>& shapes, const PolicyRows<T>& rows,
-                EncoderPass<T>& pass, T* dz, T* grads) const;
+  void Backward(const T* params, const ShapeInputs<Wide<T>>& shapes,
+                const PolicyRows<Wide<T>>& rows, EncoderPass<T>& pass, T* dz, Wide<T>* grads) const;
 
  private:
-  int phys_size_, f_size_, num_categories_;
+  int phys_size_, feature_size_, f_size_, num_categories_;
   Mlp cloud_, extrinsics_;
 };
 

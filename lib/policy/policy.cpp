@@ -37,6 +37,7 @@ std::unique_ptr<Policy<T>> MakePolicy(const PolicyStructure& structure) {
   Fail("policy structure: kind: expected actor_critic or soft_mixture, found '{}'", structure.kind);
 }
 
+template std::unique_ptr<Policy<BFloat16>> MakePolicy(const PolicyStructure&);
 template std::unique_ptr<Policy<float>> MakePolicy(const PolicyStructure&);
 template std::unique_ptr<Policy<double>> MakePolicy(const PolicyStructure&);
 

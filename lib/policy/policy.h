@@ -1,7 +1,9 @@
 // The one interface behind which all policies stand.
 //
 // A policy is a constant structure over one flat parameter array (nn/params.h): it holds no
-// numbers. float trains, double checks gradients. Shapes: n rows, K objects, A actions.
+// numbers. T is what it stores parameters and activations in: float or BFloat16 to train, double to
+// check gradients. Inputs, outputs and gradients are Wide<T>: float for both of the former. Shapes:
+// n rows, K objects, A actions.
 //
 // It has two halves. What no trainable parameter enters (frozen encoders, frozen experts) is the
 // frozen features of a row: computed once when the row is collected and handed back to every pass
@@ -14,6 +16,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "nn/bfloat16.h"
 #include "nn/params.h"
 #include "policy/structure.h"
 #include "policy/workspace.h"
@@ -41,6 +44,7 @@ struct PolicyRows {
 template <typename T>
 class Policy {
  public:
+  using W = Wide<T>;
   virtual ~Policy() = default;
 
   const PolicyStructure& structure() const { return structure_; }
@@ -54,25 +58,25 @@ class Policy {
   virtual void Initialize(std::uint64_t seed, double log_std, double mean_scale,
                           float* params) const = 0;
 
-  // Floats per row that depend on frozen parameters only.
+  // Numbers per row that depend on frozen parameters only.
   virtual int frozen_size() const = 0;
   // frozen [n, frozen_size()] is set.
-  virtual void Freeze(const T* params, const ShapeInputs<T>& shapes, const PolicyRows<T>& rows,
-                      Workspace<T>& work, T* frozen) const = 0;
+  virtual void Freeze(const T* params, const ShapeInputs<W>& shapes, const PolicyRows<W>& rows,
+                      Workspace<T>& work, W* frozen) const = 0;
 
   // mean [n, A] and value [n] are set.
-  virtual void Forward(const T* params, const ShapeInputs<T>& shapes, const PolicyRows<T>& rows,
-                       Workspace<T>& work, T* mean, T* value) const = 0;
+  virtual void Forward(const T* params, const ShapeInputs<W>& shapes, const PolicyRows<W>& rows,
+                       Workspace<T>& work, W* mean, W* value) const = 0;
   // After Forward with the same arguments: adds the gradients of trainable blocks to `grads`, which
   // is laid out like `params`; other blocks are not touched. dmean [n, A], dvalue [n].
-  virtual void Backward(const T* params, const ShapeInputs<T>& shapes, const PolicyRows<T>& rows,
-                        Workspace<T>& work, const T* dmean, const T* dvalue, T* grads) const = 0;
+  virtual void Backward(const T* params, const ShapeInputs<W>& shapes, const PolicyRows<W>& rows,
+                        Workspace<T>& work, const W* dmean, const W* dvalue, W* grads) const = 0;
 
   // Experts behind a gate; 0 without one.
   virtual int gates() const { return 0; }
   // weights [K, gates()] is set.
-  virtual void GateWeights(const T* /*params*/, const ShapeInputs<T>& /*shapes*/,
-                           Workspace<T>& /*work*/, T* /*weights*/) const {}
+  virtual void GateWeights(const T* /*params*/, const ShapeInputs<W>& /*shapes*/,
+                           Workspace<T>& /*work*/, W* /*weights*/) const {}
 
  protected:
   explicit Policy(PolicyStructure structure) : structure_(std::move(structure)) {}

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "nn/kernels.h"
 #include "nn/layers.h"
 
 namespace dexremoe {
@@ -69,20 +70,21 @@ int SoftMixture<T>::frozen_size() const {
 }
 
 template <typename T>
-void SoftMixture<T>::Freeze(const T* params, const ShapeInputs<T>& shapes,
-                            const PolicyRows<T>& rows, Workspace<T>& work, T* frozen) const {
+void SoftMixture<T>::Freeze(const T* params, const ShapeInputs<Wide<T>>& shapes,
+                            const PolicyRows<Wide<T>>& rows, Workspace<T>& work,
+                            Wide<T>* frozen) const {
   const int actions = this->structure_.num_actions;
   work.Reset();
   EncoderPass<T> encoder = encoder_.Carve(shapes.objects, rows.n, work);
   ActorPass<T> actor = experts_.front().Carve(rows.n, work);
-  T* mean = work.Take(rows.n * actions);
-  T* value = work.Take(rows.n);
+  Wide<T>* mean = work.template Take<Wide<T>>(rows.n * actions);
+  Wide<T>* value = work.template Take<Wide<T>>(rows.n);
   encoder_.ShapeForward(params, shapes, encoder);
   const T* z = encoder_.Forward(params, rows, encoder);
   for (int i = 0; i < gates(); ++i) {
     experts_[i].Forward(params, rows, z, actor, mean, value);
     for (std::int64_t r = 0; r < rows.n; ++r) {
-      T* row = frozen + r * frozen_size();
+      Wide<T>* row = frozen + r * frozen_size();
       std::copy_n(mean + r * actions, actions, row + i * actions);
       row[gates() * actions + i] = value[r];
     }
@@ -94,8 +96,9 @@ GatePass<T> SoftMixture<T>::CarveGate(std::int64_t objects, Workspace<T>& work) 
   GatePass<T> pass;
   pass.input = work.Take(objects * gate_.inputs());
   pass.gate = work.Take(gate_.ActivationSize(objects));
-  pass.weights = work.Take(objects * gates());
-  pass.dweights = work.Take(objects * gates());
+  pass.weights = work.template Take<Wide<T>>(objects * gates());
+  pass.dweights = work.template Take<Wide<T>>(objects * gates());
+  pass.dscores = work.Take(objects * gates());
   pass.scratch = work.Take(gate_.ScratchSize(objects));
   return pass;
 }
@@ -108,7 +111,7 @@ typename SoftMixture<T>::Pass SoftMixture<T>::Carve(std::int64_t objects, std::i
   pass.gate = CarveGate(objects, work);
   pass.value_input = work.Take(n * value_.inputs());
   pass.dvalue = work.Take(n);
-  pass.frozen = work.Take(n * frozen_size());
+  pass.frozen = work.template Take<Wide<T>>(n * frozen_size());
   return pass;
 }
 
@@ -116,36 +119,36 @@ template <typename T>
 void SoftMixture<T>::GateForward(const T* params, std::int64_t objects, const T* shape,
                                  GatePass<T>& pass) const {
   if (this->structure_.gate_uniform) {
-    std::fill_n(pass.weights, objects * gates(), T(1) / static_cast<T>(gates()));
+    std::fill_n(pass.weights, objects * gates(), Wide<T>(1) / static_cast<Wide<T>>(gates()));
     return;
   }
   const Span span = GateInput(this->structure_);
   const int shape_size = this->structure_.shape_size();
   for (std::int64_t k = 0; k < objects; ++k)
     std::copy_n(shape + k * shape_size + span.begin, span.size, pass.input + k * span.size);
-  const T* scores = gate_.Forward(params, objects, pass.input, pass.gate);
-  SoftmaxForward<T>(objects, gates(), scores, pass.weights);
+  Cast(objects * gates(), gate_.Forward(params, objects, pass.input, pass.gate), pass.weights);
+  SoftmaxForward<Wide<T>>(objects, gates(), pass.weights, pass.weights);
 }
 
 template <typename T>
-void SoftMixture<T>::Mix(const PolicyRows<T>& rows, const T* frozen, const T* weights,
-                         T* mean) const {
+void SoftMixture<T>::Mix(const PolicyRows<Wide<T>>& rows, const Wide<T>* frozen,
+                         const Wide<T>* weights, Wide<T>* mean) const {
   const int actions = this->structure_.num_actions;
   for (std::int64_t r = 0; r < rows.n; ++r) {
-    const T* w = weights + std::int64_t{rows.object[r]} * gates();
-    const T* expert = frozen + r * frozen_size();
-    T* to = mean + r * actions;
-    std::fill_n(to, actions, T(0));
+    const Wide<T>* w = weights + std::int64_t{rows.object[r]} * gates();
+    const Wide<T>* expert = frozen + r * frozen_size();
+    Wide<T>* to = mean + r * actions;
+    std::fill_n(to, actions, Wide<T>(0));
     for (int i = 0; i < gates(); ++i, expert += actions)
       for (int a = 0; a < actions; ++a) to[a] += w[i] * expert[a];
   }
 }
 
 template <typename T>
-void SoftMixture<T>::Forward(const T* params, const ShapeInputs<T>& shapes,
-                             const PolicyRows<T>& rows, Workspace<T>& work, T* mean,
-                             T* value) const {
-  std::vector<T> own;
+void SoftMixture<T>::Forward(const T* params, const ShapeInputs<Wide<T>>& shapes,
+                             const PolicyRows<Wide<T>>& rows, Workspace<T>& work, Wide<T>* mean,
+                             Wide<T>* value) const {
+  std::vector<Wide<T>> own;
   if (rows.frozen == nullptr) {
     own.resize(rows.n * frozen_size());
     Freeze(params, shapes, rows, work, own.data());
@@ -153,49 +156,53 @@ void SoftMixture<T>::Forward(const T* params, const ShapeInputs<T>& shapes,
   work.Reset();
   Pass pass = Carve(shapes.objects, rows.n, work);
   std::copy(own.begin(), own.end(), pass.frozen);
-  const T* frozen = rows.frozen != nullptr ? rows.frozen : pass.frozen;
+  const Wide<T>* frozen = rows.frozen != nullptr ? rows.frozen : pass.frozen;
   encoder_.ShapeForward(params, shapes, pass.encoder);
   GateForward(params, shapes.objects, pass.encoder.shape, pass.gate);
   Mix(rows, frozen, pass.gate.weights, mean);
   const int shape_size = this->structure_.shape_size();
   T* input = pass.value_input;
   for (std::int64_t r = 0; r < rows.n; ++r) {
-    const T* values = frozen + r * frozen_size() + gates() * this->structure_.num_actions;
-    input = std::copy_n(values, gates(), input);
+    const Wide<T>* values = frozen + r * frozen_size() + gates() * this->structure_.num_actions;
+    Cast(gates(), values, input);
+    input += gates();
     input = std::copy_n(pass.encoder.shape + std::int64_t{rows.object[r]} * shape_size, shape_size,
                         input);
   }
-  value_.Forward(params, rows.n, pass.value_input, value);
+  LinearForward<T>(rows.n, value_.inputs(), 1, pass.value_input,
+                   params + this->layout_.block(value_.weight(0)).offset,
+                   params + this->layout_.block(value_.bias(0)).offset, value);
 }
 
 template <typename T>
-void SoftMixture<T>::GateBackward(const T* params, std::int64_t objects, const PolicyRows<T>& rows,
-                                  const T* frozen, GatePass<T>& pass, const T* dmean,
-                                  T* grads) const {
+void SoftMixture<T>::GateBackward(const T* params, std::int64_t objects,
+                                  const PolicyRows<Wide<T>>& rows, const Wide<T>* frozen,
+                                  GatePass<T>& pass, const Wide<T>* dmean, Wide<T>* grads) const {
   const int actions = this->structure_.num_actions;
-  std::fill_n(pass.dweights, objects * gates(), T(0));
+  std::fill_n(pass.dweights, objects * gates(), Wide<T>(0));
   for (std::int64_t r = 0; r < rows.n; ++r) {
-    const T* expert = frozen + r * frozen_size();
-    const T* from = dmean + r * actions;
-    T* dw = pass.dweights + std::int64_t{rows.object[r]} * gates();
+    const Wide<T>* expert = frozen + r * frozen_size();
+    const Wide<T>* from = dmean + r * actions;
+    Wide<T>* dw = pass.dweights + std::int64_t{rows.object[r]} * gates();
     for (int i = 0; i < gates(); ++i, expert += actions)
       for (int a = 0; a < actions; ++a) dw[i] += from[a] * expert[a];
   }
-  SoftmaxBackward<T>(objects, gates(), pass.weights, pass.dweights, pass.dweights);
-  gate_.Backward(params, objects, pass.input, pass.gate, pass.dweights, static_cast<T*>(nullptr),
+  SoftmaxBackward<Wide<T>>(objects, gates(), pass.weights, pass.dweights, pass.dweights);
+  Cast(objects * gates(), pass.dweights, pass.dscores);
+  gate_.Backward(params, objects, pass.input, pass.gate, pass.dscores, static_cast<T*>(nullptr),
                  grads, pass.scratch);
 }
 
 template <typename T>
-void SoftMixture<T>::Backward(const T* params, const ShapeInputs<T>& shapes,
-                              const PolicyRows<T>& rows, Workspace<T>& work, const T* dmean,
-                              const T* dvalue, T* grads) const {
+void SoftMixture<T>::Backward(const T* params, const ShapeInputs<Wide<T>>& shapes,
+                              const PolicyRows<Wide<T>>& rows, Workspace<T>& work,
+                              const Wide<T>* dmean, const Wide<T>* dvalue, Wide<T>* grads) const {
   work.Reset();
   Pass pass = Carve(shapes.objects, rows.n, work);
-  const T* frozen = rows.frozen != nullptr ? rows.frozen : pass.frozen;
+  const Wide<T>* frozen = rows.frozen != nullptr ? rows.frozen : pass.frozen;
   if (!this->structure_.gate_uniform)
     GateBackward(params, shapes.objects, rows, frozen, pass.gate, dmean, grads);
-  std::copy_n(dvalue, rows.n, pass.dvalue);
+  Cast(rows.n, dvalue, pass.dvalue);
   // A single layer needs neither its output nor scratch nor, its inputs being frozen, their
   // gradient.
   value_.Backward(params, rows.n, pass.value_input, pass.dvalue, pass.dvalue,
@@ -203,8 +210,8 @@ void SoftMixture<T>::Backward(const T* params, const ShapeInputs<T>& shapes,
 }
 
 template <typename T>
-void SoftMixture<T>::GateWeights(const T* params, const ShapeInputs<T>& shapes, Workspace<T>& work,
-                                 T* weights) const {
+void SoftMixture<T>::GateWeights(const T* params, const ShapeInputs<Wide<T>>& shapes,
+                                 Workspace<T>& work, Wide<T>* weights) const {
   work.Reset();
   Pass pass = Carve(shapes.objects, 0, work);
   encoder_.ShapeForward(params, shapes, pass.encoder);
@@ -212,6 +219,7 @@ void SoftMixture<T>::GateWeights(const T* params, const ShapeInputs<T>& shapes, 
   std::copy_n(pass.gate.weights, shapes.objects * gates(), weights);
 }
 
+template class SoftMixture<BFloat16>;
 template class SoftMixture<float>;
 template class SoftMixture<double>;
 

@@ -21,10 +21,11 @@ namespace dexremoe {
 // Activations of the gate over the K objects, inside a Workspace.
 template <typename T>
 struct GatePass {
-  T* input;     // [K, inputs]
-  T* gate;      // activations
-  T* weights;   // [K, experts]
-  T* dweights;  // [K, experts]
+  T* input;           // [K, inputs]
+  T* gate;            // activations
+  Wide<T>* weights;   // [K, experts]; first the scores they are the softmax of
+  Wide<T>* dweights;  // [K, experts]
+  T* dscores;         // [K, experts]
   T* scratch;
 };
 
@@ -38,32 +39,35 @@ class SoftMixture final : public Policy<T> {
   void Initialize(std::uint64_t seed, double log_std, double mean_scale,
                   float* params) const override;
   int frozen_size() const override;
-  void Freeze(const T* params, const ShapeInputs<T>& shapes, const PolicyRows<T>& rows,
-              Workspace<T>& work, T* frozen) const override;
-  void Forward(const T* params, const ShapeInputs<T>& shapes, const PolicyRows<T>& rows,
-               Workspace<T>& work, T* mean, T* value) const override;
-  void Backward(const T* params, const ShapeInputs<T>& shapes, const PolicyRows<T>& rows,
-                Workspace<T>& work, const T* dmean, const T* dvalue, T* grads) const override;
+  void Freeze(const T* params, const ShapeInputs<Wide<T>>& shapes, const PolicyRows<Wide<T>>& rows,
+              Workspace<T>& work, Wide<T>* frozen) const override;
+  void Forward(const T* params, const ShapeInputs<Wide<T>>& shapes, const PolicyRows<Wide<T>>& rows,
+               Workspace<T>& work, Wide<T>* mean, Wide<T>* value) const override;
+  void Backward(const T* params, const ShapeInputs<Wide<T>>& shapes,
+                const PolicyRows<Wide<T>>& rows, Workspace<T>& work, const Wide<T>* dmean,
+                const Wide<T>* dvalue, Wide<T>* grads) const override;
   int gates() const override { return this->structure_.experts; }
-  void GateWeights(const T* params, const ShapeInputs<T>& shapes, Workspace<T>& work,
-                   T* weights) const override;
+  void GateWeights(const T* params, const ShapeInputs<Wide<T>>& shapes, Workspace<T>& work,
+                   Wide<T>* weights) const override;
 
  private:
   // The buffers of Forward and Backward.
   struct Pass {
     EncoderPass<T> encoder;
     GatePass<T> gate;
-    T* value_input;  // [n, experts + shape_size]
-    T* dvalue;       // [n]
-    T* frozen;       // [n, frozen_size()], used when the rows bring none
+    T* value_input;   // [n, experts + shape_size]
+    T* dvalue;        // [n]
+    Wide<T>* frozen;  // [n, frozen_size()], used when the rows bring none
   };
   Pass Carve(std::int64_t objects, std::int64_t n, Workspace<T>& work) const;
   GatePass<T> CarveGate(std::int64_t objects, Workspace<T>& work) const;
   // Needs e_shape in `shape` [K, shape_size]; fills pass.weights.
   void GateForward(const T* params, std::int64_t objects, const T* shape, GatePass<T>& pass) const;
-  void Mix(const PolicyRows<T>& rows, const T* frozen, const T* weights, T* mean) const;
-  void GateBackward(const T* params, std::int64_t objects, const PolicyRows<T>& rows,
-                    const T* frozen, GatePass<T>& pass, const T* dmean, T* grads) const;
+  void Mix(const PolicyRows<Wide<T>>& rows, const Wide<T>* frozen, const Wide<T>* weights,
+           Wide<T>* mean) const;
+  void GateBackward(const T* params, std::int64_t objects, const PolicyRows<Wide<T>>& rows,
+                    const Wide<T>* frozen, GatePass<T>& pass, const Wide<T>* dmean,
+                    Wide<T>* grads) const;
 
   Encoder encoder_;
   std::vector<Actor> experts_;

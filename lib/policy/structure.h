@@ -28,6 +28,8 @@ struct PolicyStructure {
   std::vector<int> gate_widths = {64};
   std::string gate_input = "full";  // e_shape: "full", or the part "cloud" or "category" alone
   bool gate_uniform = false;        // all weights 1 / experts, no gate
+  // "f32" or "bf16": what training computes in. Parameters are kept, and evaluated, in float32.
+  std::string precision = "f32";
 
   int f_size() const { return cloud_widths.back(); }
   int shape_size() const { return f_size() + num_categories; }  // e_shape

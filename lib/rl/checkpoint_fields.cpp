@@ -60,6 +60,7 @@ void WriteStructure(H5Writer& file, const PolicyStructure& s) {
   WriteWidths(file, "gate_widths", s.gate_widths);
   file.WriteString("structure/gate_input", s.gate_input, {"", "", "full, cloud or category"});
   WriteNumber(file, "gate_uniform", s.gate_uniform);
+  file.WriteString("structure/precision", s.precision, {"", "", "of the training: f32 or bf16"});
 }
 
 PolicyStructure ReadStructure(const H5Reader& file) {
@@ -79,6 +80,8 @@ PolicyStructure ReadStructure(const H5Reader& file) {
   s.gate_widths = ReadWidths(file, "gate_widths");
   s.gate_input = file.ReadString("structure/gate_input");
   s.gate_uniform = ReadNumber(file, "gate_uniform") != 0;
+  // Files from before there was a choice were trained in float32.
+  if (file.Has("structure/precision")) s.precision = file.ReadString("structure/precision");
   return s;
 }
 

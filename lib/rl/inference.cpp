@@ -10,7 +10,10 @@ constexpr std::int64_t kBlock = 256;  // rows; small enough to share 512 environ
 }  // namespace
 
 Inference::Inference(const Policy<float>& policy, ThreadPool& pool)
-    : policy_(policy), pool_(pool), scratch_(pool.workers()) {
+    : policy_(policy),
+      pool_(pool),
+      net_(MakePolicyNet(policy.structure(), pool.workers())),
+      scratch_(pool.workers()) {
   for (Scratch& scratch : scratch_) {
     scratch.mean.resize(kBlock * policy.structure().num_actions);
     scratch.value.resize(kBlock);
@@ -20,15 +23,16 @@ Inference::Inference(const Policy<float>& policy, ThreadPool& pool)
 
 void Inference::Run(const std::vector<float>& params, const ShapeInputs<float>& shapes,
                     const PolicyRows<float>& rows, const InferenceOutput& out) {
+  net_->Load(params);
   const int blocks = static_cast<int>((rows.n + kBlock - 1) / kBlock);
-  pool_.ParallelFor(blocks, [&](int block, int worker) {
-    RunBlock(params, shapes, rows, out, block * kBlock, scratch_[worker]);
-  });
+  pool_.ParallelFor(
+      blocks, [&](int block, int worker) { RunBlock(worker, shapes, rows, out, block * kBlock); });
 }
 
-void Inference::RunBlock(const std::vector<float>& params, const ShapeInputs<float>& shapes,
+void Inference::RunBlock(int worker, const ShapeInputs<float>& shapes,
                          const PolicyRows<float>& rows, const InferenceOutput& out,
-                         std::int64_t begin, Scratch& scratch) const {
+                         std::int64_t begin) {
+  Scratch& scratch = scratch_[worker];
   const PolicyStructure& s = policy_.structure();
   const std::int64_t frozen_size = policy_.frozen_size();
   PolicyRows<float> block;
@@ -39,12 +43,12 @@ void Inference::RunBlock(const std::vector<float>& params, const ShapeInputs<flo
   if (frozen_size > 0) {
     float* frozen =
         out.frozen != nullptr ? out.frozen + begin * frozen_size : scratch.frozen.data();
-    policy_.Freeze(params.data(), shapes, block, scratch.work, frozen);
+    net_->Freeze(worker, shapes, block, frozen);
     block.frozen = frozen;
   }
-  policy_.Forward(params.data(), shapes, block, scratch.work,
-                  out.mean != nullptr ? out.mean + begin * s.num_actions : scratch.mean.data(),
-                  out.value != nullptr ? out.value + begin : scratch.value.data());
+  net_->Forward(worker, shapes, block,
+                out.mean != nullptr ? out.mean + begin * s.num_actions : scratch.mean.data(),
+                out.value != nullptr ? out.value + begin : scratch.value.data());
 }
 
 }  // namespace dexremoe

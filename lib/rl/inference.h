@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/thread_pool.h"
-#include "policy/policy.h"
+#include "policy/policy_net.h"
 
 namespace dexremoe {
 
@@ -17,7 +17,7 @@ struct InferenceOutput {
 
 class Inference {
  public:
-  // Both must outlive this.
+  // Computes in the precision of the policy's structure. Both must outlive this.
   Inference(const Policy<float>& policy, ThreadPool& pool);
 
   void Run(const std::vector<float>& params, const ShapeInputs<float>& shapes,
@@ -25,15 +25,14 @@ class Inference {
 
  private:
   struct Scratch {
-    Workspace<float> work;
     std::vector<float> mean, value, frozen;
   };
-  void RunBlock(const std::vector<float>& params, const ShapeInputs<float>& shapes,
-                const PolicyRows<float>& rows, const InferenceOutput& out, std::int64_t begin,
-                Scratch& scratch) const;
+  void RunBlock(int worker, const ShapeInputs<float>& shapes, const PolicyRows<float>& rows,
+                const InferenceOutput& out, std::int64_t begin);
 
   const Policy<float>& policy_;
   ThreadPool& pool_;
+  std::unique_ptr<PolicyNet> net_;
   std::vector<Scratch> scratch_;  // per worker
 };
 

@@ -25,6 +25,8 @@ PolicyRunner::PolicyRunner(const std::string& path, const std::vector<TaskObject
     : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
   m.state = ReadCheckpoint(path);
+  // Whatever it was trained in: a file gives the same actions on every machine.
+  m.state.structure.precision = "f32";
   m.policy = MakePolicy<float>(m.state.structure);
   const ShapeTable table = MakeShapeTable(objects);
   m.shapes =

@@ -15,7 +15,8 @@ class PolicyRunner {
  public:
   // Reads any dexremoe.checkpoint (base, expert or gate). `objects` need their features loaded;
   // they may differ from those of the training (out of distribution) and may be empty when only
-  // WeightsOf is used. `pool` must outlive the runner. Throws Error naming file and field.
+  // WeightsOf is used. Computes in float32, also what was trained in bfloat16. `pool` must outlive
+  // the runner. Throws Error naming file and field.
   PolicyRunner(const std::string& path, const std::vector<TaskObject>& objects, ThreadPool& pool);
   ~PolicyRunner();
   PolicyRunner(const PolicyRunner&) = delete;

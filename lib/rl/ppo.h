@@ -5,8 +5,13 @@
 #include <vector>
 
 #include "base/thread_pool.h"
+<<<<<<< HEAD
 #include "policy/policy.h"
 #include "rl/communicator.h"
+=======
+#include "policy/policy_net.h"
+#include "rl/ppo_loss.h"
+>>>>>>> 8089f07b616f3d9d3dd53249f41af36d2a299777
 #include "rl/ppo_options.h"
 #include "rl/rollout.h"
 #include "rl/train_state.h"
@@ -45,33 +50,49 @@ class PpoLearner {
   };
   // Rows of a block gathered from the batch, and what the policy makes of them. Per worker.
   struct Scratch {
-    Workspace<float> work;
     std::vector<float> obs, phys, frozen, mean, value, dmean, dvalue;
     std::vector<int> object;
   };
   void Prepare(const RolloutBatch& batch, TrainState& state);
   void Minibatch(const RolloutBatch& batch, const ShapeInputs<float>& shapes, const int* rows,
                  int count, TrainState& state, BlockSums& total);
+<<<<<<< HEAD
   void Block(const RolloutBatch& batch, const ShapeInputs<float>& shapes, const int* rows,
              int count, double row_weight, const TrainState& state, float* grads, BlockSums& sums,
              Scratch& scratch);
   void SumOverRanks(BlockSums& total);
+=======
+  void Block(int worker, const RolloutBatch& batch, const ShapeInputs<float>& shapes,
+             const int* rows, int count, double row_weight, float* grads, BlockSums& sums);
+>>>>>>> 8089f07b616f3d9d3dd53249f41af36d2a299777
   PolicyRows<float> Gather(const RolloutBatch& batch, const int* rows, int count,
                            Scratch& scratch) const;
-  void RowLoss(const RolloutBatch& batch, int row, const float* log_std, float row_weight,
-               const float* mean, float value, float* dmean, float* dvalue, BlockSums& sums);
+  void RowLoss(const RolloutBatch& batch, int row, float row_weight, const float* mean, float value,
+               float* dmean, float* dvalue, BlockSums& sums);
+  // Makes the spread at hand the last of spreads_.
+  void AddSpread(const TrainState& state);
   void ReduceGradients(int blocks, const std::vector<BlockSums>& sums);
   void CheckFinite(const std::vector<float>& values, const char* what, const TrainState& state);
 
   PpoOptions options_;
   const Policy<float>& policy_;
   ThreadPool& pool_;
+<<<<<<< HEAD
   Communicator& communicator_;
+=======
+  std::unique_ptr<PolicyNet> net_;
+>>>>>>> 8089f07b616f3d9d3dd53249f41af36d2a299777
   TrainableSet trainable_;
+  bool follow_previous_;  // kl_reference
   // Of the batch at hand.
-  std::vector<float> advantage_, target_, old_value_;      // [R]; the last two normalised
-  std::vector<float> reference_mean_, reference_log_std_;  // [R, A], for the KL divergence
-  std::vector<int> order_;                                 // [R]
+  std::vector<float> advantage_, target_, old_value_;  // [R]; the last two normalised
+  std::vector<int> order_;                             // [R]
+  // For the KL divergence: the spreads of the rollout and of each optimiser step since, their part
+  // of the divergence of the last one from them, and each row's reference.
+  std::vector<ActionSpread<float>> spreads_;
+  std::vector<float> spread_kl_;
+  std::vector<float> reference_mean_;  // [R, A]
+  std::vector<int> reference_spread_;  // [R], into spreads_
   // Work.
   std::vector<std::unique_ptr<float[]>> block_grads_;
   std::vector<Scratch> scratch_;

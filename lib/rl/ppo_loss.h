@@ -5,28 +5,43 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace dexremoe {
 
+// log_std and what follows from it alone: computed once per policy, not per row.
+template <typename T>
+struct ActionSpread {
+  ActionSpread(int actions, const T* values) : log_std(values, values + actions) {
+    for (const T value : log_std) {
+      inverse.push_back(std::exp(-value));
+      log_volume += value + T(0.5) * std::log(2 * std::numbers::pi_v<T>);
+    }
+  }
+  int actions() const { return static_cast<int>(log_std.size()); }
+
+  std::vector<T> log_std, inverse;  // [A]; inverse = exp(-log_std)
+  T log_volume = 0;                 // -log N(mean; mean, exp(log_std))
+};
+
 // log N(action; mean, exp(log_std)).
 template <typename T>
-T LogProbability(int actions, const T* action, const T* mean, const T* log_std) {
-  T sum = 0;
-  for (int a = 0; a < actions; ++a) {
-    const T e = (action[a] - mean[a]) * std::exp(-log_std[a]);
-    sum += T(-0.5) * e * e - log_std[a] - T(0.5) * std::log(2 * std::numbers::pi_v<T>);
+T LogProbability(const ActionSpread<T>& spread, const T* action, const T* mean) {
+  T square = 0;
+  for (int a = 0; a < spread.actions(); ++a) {
+    const T e = (action[a] - mean[a]) * spread.inverse[a];
+    square += e * e;
   }
-  return sum;
+  return T(-0.5) * square - spread.log_volume;
 }
 
 // Adds weight * d logp / d mean to dmean [A] and weight * d logp / d log_std to dlog_std [A].
 template <typename T>
-void AddLogProbabilityGradient(int actions, const T* action, const T* mean, const T* log_std,
+void AddLogProbabilityGradient(const ActionSpread<T>& spread, const T* action, const T* mean,
                                T weight, T* dmean, double* dlog_std) {
-  for (int a = 0; a < actions; ++a) {
-    const T inverse = std::exp(-log_std[a]);
-    const T e = (action[a] - mean[a]) * inverse;
-    dmean[a] += weight * e * inverse;
+  for (int a = 0; a < spread.actions(); ++a) {
+    const T e = (action[a] - mean[a]) * spread.inverse[a];
+    dmean[a] += weight * e * spread.inverse[a];
     dlog_std[a] += static_cast<double>(weight * (e * e - 1));
   }
 }
@@ -89,16 +104,25 @@ T Entropy(int actions, const T* log_std) {
   return sum;
 }
 
-// KL(N(mean0, std0) || N(mean1, std1)), nats, summed over the actions.
+// KL(N(mean0, std0) || N(mean1, std1)), nats, summed over the actions, is the sum of two parts:
+// what the spreads differ by, the same for all rows, and what the means differ by.
 template <typename T>
-T KlDivergence(int actions, const T* mean0, const T* log_std0, const T* mean1, const T* log_std1) {
+T KlOfSpreads(const ActionSpread<T>& spread0, const ActionSpread<T>& spread1) {
   T sum = 0;
-  for (int a = 0; a < actions; ++a) {
-    const T spread = std::exp(2 * (log_std0[a] - log_std1[a]));
-    const T shift = (mean1[a] - mean0[a]) * std::exp(-log_std1[a]);
-    sum += log_std1[a] - log_std0[a] + T(0.5) * (spread + shift * shift - 1);
+  for (int a = 0; a < spread0.actions(); ++a) {
+    const T wider = spread1.log_std[a] - spread0.log_std[a];
+    sum += wider + T(0.5) * (std::exp(-2 * wider) - 1);
   }
   return sum;
+}
+template <typename T>
+T KlOfMeans(const T* mean0, const T* mean1, const ActionSpread<T>& spread1) {
+  T square = 0;
+  for (int a = 0; a < spread1.actions(); ++a) {
+    const T shift = (mean1[a] - mean0[a]) * spread1.inverse[a];
+    square += shift * shift;
+  }
+  return T(0.5) * square;
 }
 
 }  // namespace dexremoe

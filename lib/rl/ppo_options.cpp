@@ -5,6 +5,10 @@
 namespace dexremoe {
 
 void PpoOptions::Register(Options& options) {
+  options
+      .Add("precision", &precision,
+           "of the networks in training; auto: bf16 where the processor multiplies it")
+      .Choices({"auto", "f32", "bf16"});
   options.Add("ppo.envs", &envs, "environments").Range(1, 1 << 20);
   options.Add("ppo.horizon", &horizon, "steps per environment and iteration").Range(1, 4096);
   options.Add("ppo.minibatch", &minibatch, "rows per optimiser step").Range(1, 1 << 24);

@@ -35,6 +35,9 @@ struct PpoOptions {
   // "previous": against the policy that the rows met in the mini-epoch before (Hora, rl_games).
   // "rollout": against the one that acted.
   std::string kl_reference = "previous";
+  // "auto", "f32" or "bf16": what the networks compute in; the parameters stay float32.
+  // NOTE(paper): silent. bf16 where the processor multiplies it natively.
+  std::string precision = "auto";
   // Inputs.
   double obs_clip = 5;  // of normalised inputs
   // Curriculum. NOTE(paper): not there ("from the initial epoch onward"); off by default.

@@ -12,18 +12,20 @@ namespace {
 
 constexpr int kActBlock = 256;  // rows of noise per unit of work
 
-double Spread(const RunningMoments& moments) { return std::sqrt(moments.variance[0] + 1e-5); }
+double Deviation(const RunningMoments& moments) { return std::sqrt(moments.variance[0] + 1e-5); }
 
 }  // namespace
 
 void DenormalizeValues(const RunningMoments& moments, float* values, std::int64_t n) {
+  const double deviation = Deviation(moments);
   for (std::int64_t i = 0; i < n; ++i)
-    values[i] = static_cast<float>(values[i] * Spread(moments) + moments.mean[0]);
+    values[i] = static_cast<float>(values[i] * deviation + moments.mean[0]);
 }
 
 void NormalizeValues(const RunningMoments& moments, float* values, std::int64_t n) {
+  const double deviation = Deviation(moments);
   for (std::int64_t i = 0; i < n; ++i)
-    values[i] = static_cast<float>((values[i] - moments.mean[0]) / Spread(moments));
+    values[i] = static_cast<float>((values[i] - moments.mean[0]) / deviation);
 }
 
 Rollout::Rollout(const PpoOptions& options, const Policy<float>& policy, VecEnv& env,
@@ -90,6 +92,9 @@ void Rollout::Act(const TrainState& state, const ShapeInputs<float>& shapes, int
        batch_.object.data() + row, nullptr},
       {mean, batch_.value.data() + row, batch_.frozen.data() + row * policy_.frozen_size()});
   DenormalizeValues(state.normalizers.value, batch_.value.data() + row, envs);
+  const ActionSpread<float> spread(count, batch_.log_std.data());
+  std::vector<double> deviation(count);
+  for (int a = 0; a < count; ++a) deviation[a] = std::exp(batch_.log_std[a]);
   const auto noise = [&](int block, int) {
     const int end = std::min(envs, (block + 1) * kActBlock);
     for (int env = block * kActBlock; env < end; ++env) {
@@ -98,11 +103,9 @@ void Rollout::Act(const TrainState& state, const ShapeInputs<float>& shapes, int
                static_cast<std::uint64_t>(env_.first_env() + env)});
       float* action = batch_.action.data() + (row + env) * count;
       for (int a = 0; a < count; ++a)
-        action[a] =
-            static_cast<float>(mean[env * count + a] + std::exp(batch_.log_std[a]) * rng.Normal());
+        action[a] = static_cast<float>(mean[env * count + a] + deviation[a] * rng.Normal());
       std::copy_n(action, count, actions_.data() + static_cast<std::size_t>(env) * count);
-      batch_.log_prob[row + env] =
-          LogProbability(count, action, mean + env * count, batch_.log_std.data());
+      batch_.log_prob[row + env] = LogProbability(spread, action, mean + env * count);
     }
   };
   pool_.ParallelFor((envs + kActBlock - 1) / kActBlock, noise);

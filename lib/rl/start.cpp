@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "nn/precision.h"
 #include "policy/policy.h"
 
 namespace dexremoe {
@@ -87,6 +88,7 @@ TrainState StartBase(const StageStart& start, const PolicyOptions& options, int 
                      int phys_size, int num_actions) {
   TrainState state = Common(start, "base");
   state.structure = options.Base(obs_size, phys_size, num_actions);
+  state.structure.precision = ResolvePrecision(start.ppo.precision);
   const auto policy = MakePolicy<float>(state.structure);
   state.params.resize(policy->layout().size());
   policy->Initialize(start.seed, options.log_std, options.mean_scale, state.params.data());
@@ -103,6 +105,7 @@ TrainState StartExpert(const StageStart& start, const TrainState& base, const st
   TrainState state = Common(start, "expert");
   state.structure = base.structure;
   state.structure.train_encoders = false;
+  state.structure.precision = ResolvePrecision(start.ppo.precision);
   state.params = base.params;
   state.normalizers = base.normalizers;
   state.curriculum = Continue(start, base.curriculum);
@@ -122,6 +125,7 @@ TrainState StartGate(const StageStart& start, const PolicyOptions& options,
 
   TrainState state = Common(start, "gate");
   state.structure = options.Mixture(first.structure, static_cast<int>(experts.size()));
+  state.structure.precision = ResolvePrecision(start.ppo.precision);
   state.normalizers = first.normalizers;
   state.curriculum = Continue(start, first.curriculum);
   const auto mixture = MakePolicy<float>(state.structure);

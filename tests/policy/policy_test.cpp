@@ -10,59 +10,10 @@
 #include "base/error.h"
 #include "nn/gradient_check.h"
 #include "policy/shape_table.h"
+#include "small_policy.h"
 
 namespace dexremoe {
 namespace {
-
-PolicyStructure SmallBase() {
-  PolicyStructure s;
-  s.obs_size = 5;
-  s.phys_size = 4;
-  s.feature_size = 7;
-  s.num_actions = 3;
-  s.cloud_widths = {6, 5};
-  s.extrinsics_widths = {8, 7};
-  s.z_size = 6;
-  s.hidden = {10, 9};
-  return s;
-}
-
-PolicyStructure SmallMixture(const std::string& gate_input) {
-  PolicyStructure s = SmallBase();
-  s.kind = "soft_mixture";
-  s.train_encoders = false;
-  s.experts = 3;
-  s.gate_widths = {8, 8};
-  s.gate_input = gate_input;
-  return s;
-}
-
-// Random inputs of n rows over K objects, and random weights of a scalar loss.
-template <typename T>
-struct Problem {
-  Problem(const PolicyStructure& s, std::int64_t rows, std::int64_t objects) : n(rows), k(objects) {
-    Rng rng(3, Stream::kTest, {1});
-    const auto draw = [&](std::int64_t count) {
-      std::vector<T> values(count);
-      for (T& v : values) v = static_cast<T>(rng.Normal());
-      return values;
-    };
-    obs = draw(n * s.obs_size);
-    phys = draw(n * s.phys_size);
-    feature = draw(k * s.feature_size);
-    category.assign(k * s.num_categories, T(0));
-    for (std::int64_t i = 0; i < k; ++i) category[i * s.num_categories + i % s.num_categories] = 1;
-    for (std::int64_t i = 0; i < n; ++i) object.push_back(static_cast<int>((2 * i + 1) % k));
-    dmean = draw(n * s.num_actions);
-    dvalue = draw(n);
-  }
-  PolicyRows<T> rows() const { return {n, obs.data(), phys.data(), object.data(), nullptr}; }
-  ShapeInputs<T> shapes() const { return {k, feature.data(), category.data()}; }
-
-  std::int64_t n, k;
-  std::vector<T> obs, phys, feature, category, dmean, dvalue;
-  std::vector<int> object;
-};
 
 std::vector<double> RandomParams(const Policy<double>& policy) {
   Rng rng(4, Stream::kTest, {2});

@@ -21,6 +21,7 @@ inline PpoOptions ToyPpo() {
   o.block_rows = 128;
   o.gamma = 0.9;
   o.learning_rate = 1e-3;
+  o.precision = "f32";  // the same everywhere; tests of bf16 ask for it
   return o;
 }
 

@@ -7,8 +7,8 @@
 
 #include "base/random.h"
 #include "rl/gae.h"
-#include "rl/rank_statistics.h"
 #include "rl/ppo.h"
+#include "rl/rank_statistics.h"
 
 namespace dexremoe {
 namespace {
@@ -37,28 +37,26 @@ TEST(PpoLoss, LogProbabilityMatchesTheGaussianDensity) {
   const auto density = [](double x, double m, double s) {
     return std::exp(-(x - m) * (x - m) / (2 * s * s)) / (s * std::sqrt(2 * std::numbers::pi));
   };
-  EXPECT_NEAR(LogProbability(2, action, mean, log_std),
+  EXPECT_NEAR(LogProbability(ActionSpread<double>(2, log_std), action, mean),
               std::log(density(0.3, 0.1, 1) * density(-1.2, 0.4, 0.5)), 1e-12);
 }
 
 TEST(PpoLoss, LogProbabilityGradientMatchesCentralDifferences) {
   const auto action = Draw(1), mean = Draw(2), log_std = Draw(3, kActions, 0.5);
   std::vector<double> dmean(kActions), dlog_std(kActions);
-  AddLogProbabilityGradient(kActions, action.data(), mean.data(), log_std.data(), 2.5, dmean.data(),
-                            dlog_std.data());
+  const ActionSpread<double> spread(kActions, log_std.data());
+  AddLogProbabilityGradient(spread, action.data(), mean.data(), 2.5, dmean.data(), dlog_std.data());
   for (int a = 0; a < kActions; ++a) {
-    EXPECT_NEAR(dmean[a],
-                Slope(
-                    [&](const auto& m) {
-                      return 2.5 *
-                             LogProbability(kActions, action.data(), m.data(), log_std.data());
-                    },
-                    mean, a),
-                1e-7);
+    EXPECT_NEAR(
+        dmean[a],
+        Slope([&](const auto& m) { return 2.5 * LogProbability(spread, action.data(), m.data()); },
+              mean, a),
+        1e-7);
     EXPECT_NEAR(dlog_std[a],
                 Slope(
                     [&](const auto& s) {
-                      return 2.5 * LogProbability(kActions, action.data(), mean.data(), s.data());
+                      return 2.5 * LogProbability(ActionSpread<double>(kActions, s.data()),
+                                                  action.data(), mean.data());
                     },
                     log_std, a),
                 1e-7);
@@ -120,12 +118,13 @@ TEST(PpoLoss, BoundsActOnBothSidesOnlyBeyondThem) {
 TEST(PpoLoss, EntropyIsTheMeanSurprise) {
   const auto mean = Draw(6), log_std = Draw(7, kActions, 0.5);
   Rng rng(8, Stream::kTest, {8});
+  const ActionSpread<double> spread(kActions, log_std.data());
   double surprise = 0;
   constexpr int kDraws = 200000;
   for (int i = 0; i < kDraws; ++i) {
     double action[kActions];
     for (int a = 0; a < kActions; ++a) action[a] = mean[a] + std::exp(log_std[a]) * rng.Normal();
-    surprise -= LogProbability(kActions, action, mean.data(), log_std.data()) / kDraws;
+    surprise -= LogProbability(spread, action, mean.data()) / kDraws;
   }
   EXPECT_NEAR(Entropy(kActions, log_std.data()), surprise, 0.02);
 }
@@ -138,9 +137,11 @@ TEST(PpoLoss, KlMatchesItsClosedFormAndVanishesAtEquality) {
     const double v0 = std::exp(2 * s0[a]), v1 = std::exp(2 * s1[a]), d = mean0[a] - mean1[a];
     expected += std::log(std::sqrt(v1 / v0)) + (v0 + d * d) / (2 * v1) - 0.5;
   }
-  EXPECT_NEAR(KlDivergence(kActions, mean0.data(), s0.data(), mean1.data(), s1.data()), expected,
-              1e-12);
-  EXPECT_EQ(KlDivergence(kActions, mean0.data(), s0.data(), mean0.data(), s0.data()), 0);
+  const ActionSpread<double> spread0(kActions, s0.data()), spread1(kActions, s1.data());
+  EXPECT_NEAR(KlOfSpreads(spread0, spread1) + KlOfMeans(mean0.data(), mean1.data(), spread1),
+              expected, 1e-12);
+  EXPECT_EQ(KlOfSpreads(spread0, spread0), 0);
+  EXPECT_EQ(KlOfMeans(mean0.data(), mean0.data(), spread0), 0);
 }
 
 TEST(Gae, MatchesTheHandComputation) {

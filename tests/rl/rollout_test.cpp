@@ -16,9 +16,9 @@ TEST(Rollout, RecordsTheLogProbabilityOfWhatItDid) {
   const ShapeRows shapes(run.trainer.state().table, run.trainer.state().normalizers.feature, 5, 6);
   Rollout rollout(ToyPpo(), run.trainer.policy(), run.env, run.pool);
   const RolloutBatch& b = rollout.Collect(run.trainer.state(), shapes.inputs(), nullptr, nullptr);
+  const Spread<float> spread(2, b.log_std.data());
   for (std::size_t r = 0; r < b.log_prob.size(); ++r)
-    EXPECT_FLOAT_EQ(b.log_prob[r],
-                    LogProbability(2, &b.action[2 * r], &b.mean[2 * r], b.log_std.data()));
+    EXPECT_FLOAT_EQ(b.log_prob[r], LogProbability(spread, &b.action[2 * r], &b.mean[2 * r]));
 }
 
 // All toy episodes time out at step 20 together (the noise is too small to leave the field). The
