@@ -5,13 +5,9 @@
 #include <vector>
 
 #include "base/thread_pool.h"
-<<<<<<< HEAD
-#include "policy/policy.h"
-#include "rl/communicator.h"
-=======
 #include "policy/policy_net.h"
+#include "rl/communicator.h"
 #include "rl/ppo_loss.h"
->>>>>>> 8089f07b616f3d9d3dd53249f41af36d2a299777
 #include "rl/ppo_options.h"
 #include "rl/rollout.h"
 #include "rl/train_state.h"
@@ -56,15 +52,9 @@ class PpoLearner {
   void Prepare(const RolloutBatch& batch, TrainState& state);
   void Minibatch(const RolloutBatch& batch, const ShapeInputs<float>& shapes, const int* rows,
                  int count, TrainState& state, BlockSums& total);
-<<<<<<< HEAD
-  void Block(const RolloutBatch& batch, const ShapeInputs<float>& shapes, const int* rows,
-             int count, double row_weight, const TrainState& state, float* grads, BlockSums& sums,
-             Scratch& scratch);
-  void SumOverRanks(BlockSums& total);
-=======
   void Block(int worker, const RolloutBatch& batch, const ShapeInputs<float>& shapes,
              const int* rows, int count, double row_weight, float* grads, BlockSums& sums);
->>>>>>> 8089f07b616f3d9d3dd53249f41af36d2a299777
+  void SumOverRanks(BlockSums& total);
   PolicyRows<float> Gather(const RolloutBatch& batch, const int* rows, int count,
                            Scratch& scratch) const;
   void RowLoss(const RolloutBatch& batch, int row, float row_weight, const float* mean, float value,
@@ -77,11 +67,8 @@ class PpoLearner {
   PpoOptions options_;
   const Policy<float>& policy_;
   ThreadPool& pool_;
-<<<<<<< HEAD
   Communicator& communicator_;
-=======
   std::unique_ptr<PolicyNet> net_;
->>>>>>> 8089f07b616f3d9d3dd53249f41af36d2a299777
   TrainableSet trainable_;
   bool follow_previous_;  // kl_reference
   // Of the batch at hand.
