@@ -1,6 +1,8 @@
 #include "task/observation.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "task/rotation.h"
 
@@ -87,6 +89,10 @@ void WriteExtras(const TaskOptions& options, const HandModel& hand, const HandMo
   }
   if (Shows(options, "tip_contact"))
     for (std::size_t f = 0; f < hand.chains.size(); ++f) put(hand_motion.tip_contact[f]);
+  if (Shows(options, "wait_clock")) {
+    const double phase = 2 * std::numbers::pi * hand_motion.waited / kWaitPeriod;
+    put(std::sin(phase)), put(std::cos(phase));
+  }
 }
 
 }  // namespace dexremoe::internal
@@ -100,6 +106,7 @@ int PhysSize(const TaskOptions& options, const HandModel& hand) {
   if (internal::Shows(options, "joint_speed")) size += hand.num_joints();
   if (internal::Shows(options, "tip_position")) size += 3 * fingers;
   if (internal::Shows(options, "tip_contact")) size += fingers;
+  if (internal::Shows(options, "wait_clock")) size += 2;
   return size;
 }
 

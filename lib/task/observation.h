@@ -37,6 +37,7 @@ struct HandMotion {
   const double* q;                  // [J] rad
   const double* qd;                 // [J] rad/s
   const std::uint8_t* tip_contact;  // [F]
+  int waited;                       // control steps since the last success or the start
 };
 // The rest of e_phys, as options.extra_inputs asks (see PhysSize).
 void WriteExtras(const TaskOptions& options, const HandModel& hand, const HandMotion& hand_motion,

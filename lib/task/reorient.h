@@ -84,6 +84,10 @@ inline constexpr int kPhysSize = 23;
 //   "joint_speed"   J: joint speeds over the last control step, rad/s
 //   "tip_position"  3 a finger: fingertip frame's origin less the object's position, m, W
 //   "tip_contact"   1 a finger: 1 when its tip touches the object
+//   "wait_clock"    2: sine and cosine of the time since the last success (or the start), with a
+//                   period of kWaitPeriod. Without it a policy without memory, once it jams, does
+//                   the same for ever.
+inline constexpr int kWaitPeriod = 180;  // control steps
 int PhysSize(const TaskOptions& options, const HandModel& hand);
 
 // kJam: goal_timeout ran out. Only a timeout leaves the value of the state to be counted on.

@@ -90,8 +90,8 @@ void ReorientBatch::Impl::WriteRow(int env, const internal::ObjectMotion& motion
   const Quaterniond q_WG = internal::ShownGoal(options, motion.X_WO.q, GoalAt(state, env));
   float* const extras = internal::WritePhys(physics[env], motion, q_WG,
                                             &state.phys[static_cast<std::size_t>(env) * phys_size]);
-  internal::WriteExtras(options, hand, {&state.q[row], &state.qd[row], touch}, motion.X_WO, q_WG,
-                        extras);
+  internal::WriteExtras(options, hand, {&state.q[row], &state.qd[row], touch, state.waited[env]},
+                        motion.X_WO, q_WG, extras);
 }
 
 // NOTE(paper): says only that a moving average of actions gives joint targets. Here an action moves

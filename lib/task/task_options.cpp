@@ -41,7 +41,7 @@ void TaskOptions::Register(Options& options) {
   options.Add("task.goal_shown", &goal_shown, "the goal is shown at most this far away, rad")
       .Range(1e-3, 10);
   options.Add("task.extra_inputs", &extra_inputs, "privileged inputs beside the paper's 23")
-      .Choices({"goal_vector", "joint_speed", "tip_position", "tip_contact"});
+      .Choices({"goal_vector", "joint_speed", "tip_position", "tip_contact", "wait_clock"});
   options.Add("task.observe", &observe, "what o_t shows of the past commands")
       .Choices({"action", "target"});
   options.Add("task.goal_angle", &goal_angle, "goals within this angle, rad; pi and more: any")
