@@ -1,6 +1,7 @@
 // Runs a trained policy on a set of objects and says how often it reaches its goals.
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "base/error.h"
@@ -15,6 +16,8 @@ namespace {
 
 using namespace dexremoe;
 
+constexpr char kHold[] = "hold";  // for --policy
+
 struct EvaluateOptions {
   std::string policy, objects, split = "train", out;
   std::string trace, trace_choice = "best";
@@ -27,7 +30,8 @@ struct EvaluateOptions {
   HandOptions hand;
 
   void Register(Options& options) {
-    options.Add("policy", &policy, "checkpoint of a base, expert or gate").Required();
+    options.Add("policy", &policy, "checkpoint of a base, expert or gate; hold: no actions")
+        .Required();
     options.Add("objects", &objects, "objects.csv").Required();
     options.Add("split", &split, "which objects").Choices({"train", "ood", "all"});
     options.Add("out", &out, "evaluation to write (dexremoe.eval)").Required().NotStored();
@@ -55,7 +59,8 @@ std::vector<ObjectEntry> SelectEntries(const EvaluateOptions& o) {
 
 // The files whose content decides the result, for the provenance.
 std::vector<std::string> Inputs(const EvaluateOptions& o, const std::vector<ObjectEntry>& entries) {
-  std::vector<std::string> inputs = {o.policy, o.objects};
+  std::vector<std::string> inputs = {o.objects};
+  if (o.policy != kHold) inputs.push_back(o.policy);
   for (const ObjectEntry& entry : entries) inputs.push_back(entry.grasps);
   return inputs;
 }
@@ -73,7 +78,7 @@ EvalFile DescribeEval(const EvaluateOptions& o, const EvalSetup& setup) {
 }
 
 void RecordTrace(const EvaluateOptions& o, const EvalSetup& setup, const EvalRun& run,
-                 const PolicyRunner& runner, const ActFunction& act, ThreadPool& pool,
+                 const PolicyRunner* runner, const ActFunction& act, ThreadPool& pool,
                  const Provenance& provenance) {
   const auto jobs = ChooseEpisodes(run, o.trace_episodes, o.trace_choice);
   TraceFile trace;
@@ -81,9 +86,11 @@ void RecordTrace(const EvaluateOptions& o, const EvalSetup& setup, const EvalRun
   trace.control_rate = setup.sim.control_rate / setup.task.action_repeat;
   trace.tolerance = run.tolerance;
   for (const Joint& joint : setup.hand.joints) trace.joint_names.push_back(joint.name);
-  for (int e = 0; e < runner.gates(); ++e)
+  std::vector<float> gates;
+  if (runner != nullptr) gates = runner->GateWeights();
+  for (int e = 0; runner != nullptr && e < runner->gates(); ++e)
     trace.expert_names.push_back(fmt::format("expert {}", e + 1));
-  trace.episodes = RecordEpisodes(setup, o.eval, run, jobs, act, runner.GateWeights(), pool);
+  trace.episodes = RecordEpisodes(setup, o.eval, run, jobs, act, gates, pool);
   WriteTrace(o.trace, trace, provenance);
   LogInfo("{}: {} episodes", o.trace, trace.episodes.size());
 }
@@ -93,8 +100,9 @@ void Run(const EvaluateOptions& o, const Options& options) {
   const Provenance provenance = MakeProvenance(options, o.seed, Inputs(o, entries));
   EvalSetup setup{o.task, o.sim, LoadHand(o.hand), LoadObjects(entries, {}), o.seed};
   ThreadPool pool(o.workers);
-  PolicyRunner runner(o.policy, setup.objects, pool);
-  const ActFunction act = PolicyActions(runner);
+  std::unique_ptr<PolicyRunner> runner;
+  if (o.policy != kHold) runner = std::make_unique<PolicyRunner>(o.policy, setup.objects, pool);
+  const ActFunction act = runner ? PolicyActions(*runner) : HoldActions();
   if (o.task.goal_angle < 3.14159 || o.task.velocity_tolerance > 1)
     LogWarning(
         "task.goal_angle {} and task.velocity_tolerance {} make the task easier than the "
@@ -104,7 +112,8 @@ void Run(const EvaluateOptions& o, const Options& options) {
   file.runs = Evaluate(setup, o.eval, act, pool);
   WriteEval(o.out, file, provenance);
   std::fputs(ReportOf(file).c_str(), stdout);
-  if (!o.trace.empty()) RecordTrace(o, setup, file.runs.front(), runner, act, pool, provenance);
+  if (!o.trace.empty())
+    RecordTrace(o, setup, file.runs.front(), runner.get(), act, pool, provenance);
 }
 
 }  // namespace

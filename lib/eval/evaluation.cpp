@@ -77,6 +77,12 @@ ActFunction PolicyActions(PolicyRunner& runner) {
   };
 }
 
+ActFunction HoldActions() {
+  return [](const ReorientBatch&, std::vector<float>& actions) {
+    std::fill(actions.begin(), actions.end(), 0.0f);
+  };
+}
+
 std::vector<EpisodeRecord> RunJobs(ReorientBatch& batch, const ActFunction& act,
                                    const std::vector<EpisodeJob>& jobs, const PushOptions& push,
                                    std::uint64_t seed, const StepObserver& observer,

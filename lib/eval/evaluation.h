@@ -38,6 +38,8 @@ using ActFunction = std::function<void(const ReorientBatch& batch, std::vector<f
 // takes other paths for a few rows than for many, so the batch is filled up to whole blocks.
 // `runner` must outlive the function.
 ActFunction PolicyActions(PolicyRunner& runner);
+// No actions: the servos keep the targets of the grasp. The least that a policy has to beat.
+ActFunction HoldActions();
 
 // Called before every step with the actions about to be taken and after it with its result.
 struct StepObserver {
