@@ -15,7 +15,7 @@ WORKERS ?= 0#                      ## threads (0: one per processor); results do
 SEED ?= 1#                         ## seed of everything random
 LAUNCH ?= #                        ## starts trainings on several processes, e.g. "mpirun -n 4"
 SCALE ?= quick#                    ## size of the run: quick, desk or paper
-CONFIG ?= data/config/$(SCALE).toml#  ## sizes and hyper-parameters of all stages
+CONFIG ?= data/config/$(SCALE).toml#  ## sizes and hyper-parameters of all stages; a later file wins
 OUT ?= results/$(SCALE)$(if $(filter builtin,$(OBJECTS)),,-$(notdir $(OBJECTS:%/=%)))#  ## folder of the run
 
 # Recursive calls use all processors unless the user gave -j.

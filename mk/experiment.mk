@@ -8,7 +8,7 @@ RUN    := $(notdir $(OUT))
 BIN    := $(BUILD)/bin
 MESHES := $(if $(filter builtin,$(OBJECTS)),meshes/builtin,$(OBJECTS))
 OBJDIR := data/objects/$(RUN)
-COMMON := --config=$(CONFIG) --seed=$(SEED)
+COMMON := $(CONFIG:%=--config=%) --seed=$(SEED)
 RUNS   := --hand=$(HAND) --workers=$(WORKERS)
 SIM    := --sim.engine=$(ENGINE) $(RUNS)
 
@@ -27,14 +27,20 @@ train: deps  ## train base, experts and gate (SCALE=quick, desk or paper); calle
 	+@$(MAKE) -j1 --no-print-directory EXPERIMENT=1 trained
 	@printf 'Trained: %s\nWatch with: tensorboard --logdir %s\n' $(OUT)/gate.h5 $(OUT)/tensorboard
 
-# The learning check: base policy against the untrained network on one cube.
-.PHONY: cube cube-products
-cube: deps  ## train on a single cube and compare with the untrained network (about 15 minutes)
+# The learning checks: a base policy by the desk recipe against the open-loop hold and the untrained
+# network, on every engine. SEED=2 makes a second run beside the first.
+seeded = results/$(1)$(if $(filter 1,$(SEED)),,-seed$(SEED))
+LEARN = +@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 learned
+
+.PHONY: cube six learned
+cube: deps  ## train on a single cube by the desk recipe and check it on every engine (an hour)
 	+@$(MAKE) $(JOBS) --no-print-directory build
 	$(BIN)/make_objects --recipes=data/shapes --out=meshes/shapes
-	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 OBJECTS=meshes/shapes CONFIG=data/config/cube.toml \
-	  OUT=results/cube cube-products
-cube-products: $(OUT)/tables/cube.md $(OUT)/figures/base.png
+	$(LEARN) OBJECTS=meshes/shapes OUT=$(call seeded,cube) CONFIG="data/config/desk.toml data/config/cube.toml"
+six: deps  ## the same on one mesh of each category of OBJECTS (an hour)
+	+@$(MAKE) $(JOBS) --no-print-directory build
+	$(LEARN) OUT=$(call seeded,six) CONFIG="data/config/desk.toml data/config/six.toml"
+learned: $(OUT)/tables/learned.md $(OUT)/figures/base.png
 
 # What a policy trained on lanes is worth on the other engines: on the cube, or on one mesh of each
 # category of OBJECTS=DIR.
@@ -81,12 +87,12 @@ OBJECT_FILES = $(foreach name,$(OBJECT_NAMES),$(OBJDIR)/$(name)/$(1).h5)
 define object_rules
 $(OBJDIR)/$(1)/mesh.h5: $(MESH_$(1)) $(CONFIG) | $(BIN)/scale_mesh
 	@mkdir -p $$(@D)
-	$(BIN)/scale_mesh --config=$(CONFIG) --mesh=$$< --name=$(1) --category=$(CATEGORY_$(1)) --out=$$@ >$$(@D)/scale.log
+	$(BIN)/scale_mesh $(CONFIG:%=--config=%) --mesh=$$< --name=$(1) --category=$(CATEGORY_$(1)) --out=$$@ >$$(@D)/scale.log
 endef
 $(foreach name,$(OBJECT_NAMES),$(eval $(call object_rules,$(name))))
 
 $(OBJDIR)/%/parts.h5: $(OBJDIR)/%/mesh.h5 | $(BIN)/decompose
-	$(BIN)/decompose --config=$(CONFIG) --mesh=$< --out=$@ >$(@D)/decompose.log
+	$(BIN)/decompose $(CONFIG:%=--config=%) --mesh=$< --out=$@ >$(@D)/decompose.log
 $(OBJDIR)/%/cloud.h5: $(OBJDIR)/%/mesh.h5 | $(BIN)/sample_cloud
 	$(BIN)/sample_cloud $(COMMON) --mesh=$< --out=$@ >$(@D)/cloud.log
 $(OBJDIR)/%/shape.h5: $(OBJDIR)/%/cloud.h5 $(OUT)/shape_net.h5 | $(BIN)/describe_shape
@@ -149,9 +155,6 @@ $(OUT)/tables/table1.md: $(EVAL_FILES) data/paper_tables.csv | $(BIN)/tabulate
 	$(BIN)/tabulate --eval=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" \
 	  --paper=data/paper_tables.csv --out=$(basename $@)
 
-$(OUT)/tables/cube.md: $(OUT)/eval/untrained.h5 $(OUT)/eval/base.h5 | $(BIN)/tabulate
-	$(BIN)/tabulate --eval=$(call commas,$^) --labels="Untrained,Base policy" --out=$(basename $@)
-
 # On every engine: the strict task, and the nearer goals and looser stop that policies learn first,
 # where successes are many. MuJoCo at about 1 ms is the referee, where it is installed.
 CHECKED := lanes ode $(if $(wildcard /usr/include/mujoco/mujoco.h),mujoco)
@@ -171,6 +174,16 @@ $(CHECKED:%=$(OUT)/eval/%_near.h5): $(OUT)/eval/%_near.h5: $(OUT)/base.h5 | $(BI
 	  --objects=$(OUT)/objects.csv --out=$@ >$(@:.h5=.txt)
 $(OUT)/tables/engines.md: $(CHECK_FILES) | $(BIN)/tabulate
 	$(BIN)/tabulate --engines --eval=$(call commas,$^) --labels=$(call commas,$(CHECKED)) --out=$(basename $@)
+# The least that a policy has to beat.
+CONTROLS := $(OUT)/eval/hold.h5 $(OUT)/eval/start.h5
+$(OUT)/eval/start.h5: $(OUT)/untrained.h5
+$(CONTROLS): $(OUT)/eval/%.h5: $(READY) | $(BIN)/evaluate
+	@mkdir -p $(@D)
+	$(BIN)/evaluate $(COMMON) $(RUNS) $(check) $(check_lanes) --policy=$(if $(filter hold,$*),hold,$(OUT)/untrained.h5) \
+	  --objects=$(OUT)/objects.csv --out=$@ >$(@:.h5=.txt)
+$(OUT)/tables/learned.md: $(CONTROLS) $(CHECK_FILES) | $(BIN)/tabulate
+	$(BIN)/tabulate --engines --eval=$(call commas,$^) --out=$(basename $@) \
+	  --labels="Open-loop hold,Untrained,$(call commas,$(CHECKED:%=Base:%))"
 $(OUT)/tables/engines_near.md: $(CHECKED:%=$(OUT)/eval/%_near.h5) | $(BIN)/tabulate
 	$(BIN)/tabulate --engines --eval=$(call commas,$^) --labels=$(call commas,$(CHECKED)) --out=$(basename $@)
 
@@ -208,7 +221,8 @@ publish:  ## copy the tables and figures of a finished run to results/tables and
 	@mkdir -p results/tables paper_figs
 	cp $(OUT)/tables/table1.md $(OUT)/tables/table1.csv $(OUT)/tables/table1.tex results/tables/
 	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png curves.png per_object.png tsne.png strip.png) paper_figs/
-	@if [ -f results/cube/tables/cube.md ]; then cp results/cube/tables/cube.md results/tables/ && \
-	  cp results/cube/figures/base.png paper_figs/cube.png; fi
+	@for run in cube six; do for table in results/$$run*/tables/learned.md; do [ ! -f $$table ] || \
+	  cp $$table results/tables/learned_$$(basename $$(dirname $$(dirname $$table))).md; done; \
+	  [ ! -f results/$$run/figures/base.png ] || cp results/$$run/figures/base.png paper_figs/$$run.png; done
 	@for table in results/transfer*/tables/engines*.md; do [ ! -f $$table ] || \
 	  cp $$table results/tables/$$(basename $$(dirname $$(dirname $$table)))_$$(basename $$table); done
