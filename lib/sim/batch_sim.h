@@ -46,8 +46,10 @@ struct EnvPhysics {
   double scale = 1.0;                                     // uniform size factor
   double kp_factor = 1.0, kd_factor = 1.0;                // servo gains relative to the hand's
   Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, 9.81);  // m/s^2 in W
-  // Soft fingers: a moment about a contact's normal resists spin there; m, its bound over the
-  // normal force. Of a patch of radius r under even pressure 2/3 friction r; of a point 0.
+  // Soft fingers: a moment m resists spin about a contact's normal. With its normal force n and
+  // tangential force t, (t / friction)^2 + (m / torsional_friction)^2 <= n^2 (Howe and Cutkosky,
+  // "Practical force-motion models for sliding manipulation", IJRR 1996). A patch of radius r under
+  // even pressure has 2/3 friction r; a point 0; m.
   double torsional_friction = 0;
 };
 

@@ -190,9 +190,14 @@ HWY_INLINE void SolveContact(ContactRows& rows, F friction, Velocity<N>& velocit
   rows.impulse[2] = t2;
 }
 
-// Stops the spin at a contact, as far as a moment impulse of at most `most` can.
+// Stops the spin at a contact, as far as the tangential impulses leave it room in an ellipsoid of
+// friction (see EnvPhysics::torsional_friction).
 template <int N>
-HWY_INLINE void SolveSpin(SpinRow& row, F most, Velocity<N>& velocity) {
+HWY_INLINE void SolveSpin(ContactRows& rows, const Friction& friction, Velocity<N>& velocity) {
+  SpinRow& row = rows.spin;
+  const F t1 = rows.impulse[1] * friction.inverse, t2 = rows.impulse[2] * friction.inverse;
+  const F left = rows.impulse[0] * rows.impulse[0] - t1 * t1 - t2 * t2;
+  const F most = friction.torsion * Sqrt(Max(left, F(0.0f)));
   const F impulse = Clamp(row.impulse - row.inverse * velocity.Along(row), -most, most);
   velocity.Add(row, impulse - row.impulse);
   row.impulse = impulse;

@@ -14,8 +14,25 @@ namespace HWY_NAMESPACE {
 
 // As kSoftness and kImmovable, for rows of moments. (The object's own share is above 1000 /
 // (kg m^2).)
-constexpr float kSpinSoftness = 1.0f;  // 1 / (kg m^2)
-constexpr float kUnturnable = 1e-3f;   // 1 / (kg m^2)
+constexpr float kSpinSoftness = 1.0f;    // 1 / (kg m^2)
+constexpr float kUnturnable = 1e-3f;     // 1 / (kg m^2)
+constexpr float kLeastFriction = 1e-5f;  // 1
+
+// Of an environment's contacts.
+struct Friction {
+  F slide, inverse;  // Coulomb coefficient, and 1 over it
+  F torsion;         // m
+  bool soft;         // some lane has torsional friction
+};
+
+HWY_INLINE Friction LoadFriction(const BlockLayout& at, const float* block) {
+  Friction friction;
+  friction.slide = Load(block + at.friction * kBlockLanes);
+  friction.inverse = Reciprocal(Max(friction.slide, F(kLeastFriction)));
+  friction.torsion = Load(block + at.torsion * kBlockLanes);
+  friction.soft = Any(friction.torsion > F(0.0f));
+  return friction;
+}
 
 // The fourth row of a contact: the hand's angular velocity along the normal less the object's,
 // hand . u + object . ws.
@@ -27,8 +44,8 @@ struct SpinRow {
 };
 
 template <int N>
-HWY_INLINE void SetUpSpin(int group, int first, const Contacts& found, int k,
-                            const HandState& hand, const ObjectState& object, SpinRow& row) {
+HWY_INLINE void SetUpSpin(int group, int first, const Contacts& found, int k, const HandState& hand,
+                          const ObjectState& object, SpinRow& row) {
   const V3& normal = found.normal[k];
   F j[N + 1];
   for (int i = 0; i < N; ++i)

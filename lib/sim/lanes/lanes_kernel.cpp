@@ -24,8 +24,7 @@ constexpr int kGroups = kMaxChains + 1;
 struct Substep {
   HandState hand;
   ObjectState object;
-  F friction, torsion;      // 1, m
-  bool soft;                // some lane has torsional friction
+  Friction friction;
   Contacts found[kGroups];  // of each chain, then of the palm
   int used[kGroups];        // slots that any lane uses
   ContactRows rows[kGroups][kSlots];
@@ -108,7 +107,7 @@ HWY_NOINLINE void SetUp(const LanesModel& model, float* block, Substep& s) {
     for (int k = 0; k < s.used[g]; ++k) {
       WithSize(size, [&](auto n) HWY_ATTR {
         SetUpContact<decltype(n)::value>(palm ? 0 : g, first, s.found[g], k, s.hand, s.object,
-                                         s.soft, s.rows[g][k]);
+                                         s.friction.soft, s.rows[g][k]);
       });
       Inherit(at, block, g, s.found[g].key[k], s.found[g].count > F(static_cast<float>(k)),
               s.rows[g][k]);
@@ -143,7 +142,7 @@ HWY_INLINE void Drive(const LanesModel& model, F h, F rate, Substep& s) {
   ForEachContact(model, s, [&](ContactRows& rows, auto& velocity) HWY_ATTR {
     rows.ask = SeparationSpeed(rows.gap, rate);
     for (int r = 0; r < 3; ++r) velocity.Add(rows, r, rows.impulse[r]);
-    if (s.soft) velocity.Add(rows.spin, rows.spin.impulse);
+    if (s.friction.soft) velocity.Add(rows.spin, rows.spin.impulse);
   });
   for (int k = 0; k < s.self_count; ++k) {
     s.self[k].ask = SeparationSpeed(s.self[k].gap, rate);
@@ -158,8 +157,8 @@ HWY_INLINE void Sweep(const LanesModel& model, F h, F* spent, Substep& s) {
              [&](auto n) HWY_ATTR { LimitJoints<decltype(n)::value>(model, c, h, s.hand, spent); });
   for (int k = 0; k < s.self_count; ++k) SolveSelf(s.self[k], s.hand.u);
   ForEachContact(model, s, [&](ContactRows& rows, auto& velocity) HWY_ATTR {
-    SolveContact(rows, s.friction, velocity);
-    if (s.soft) SolveSpin(rows.spin, s.torsion * rows.impulse[0], velocity);
+    SolveContact(rows, s.friction.slide, velocity);
+    if (s.friction.soft) SolveSpin(rows, s.friction, velocity);
   });
 }
 
@@ -207,7 +206,7 @@ HWY_NOINLINE void Finish(const LanesModel& model, float* block, F rate, Substep&
         normal = OrZero(here, rows.impulse[0]);
         friction =
             OrZero(here, rows.tangent[0] * rows.impulse[1] + rows.tangent[1] * rows.impulse[2]);
-        if (s.soft) spin = OrZero(here, rows.spin.impulse);
+        if (s.friction.soft) spin = OrZero(here, rows.spin.impulse);
         const M pressed = normal * rate > F(kNoForce);
         points += OrZero(pressed, F(1.0f));
         touch = Max(touch, OrZero(pressed, s.found[g].tip[k]));
@@ -240,9 +239,7 @@ HWY_INLINE void StepLanes(const LanesModel& model, float* block, KernelCounts* c
   const float step = model.substep / static_cast<float>(model.inner_steps);
   const F h(step), rate(1 / step);
   Substep s;
-  s.friction = Load(Row(block, at.friction));
-  s.torsion = Load(Row(block, at.torsion));
-  s.soft = Any(s.torsion > F(0.0f));
+  s.friction = LoadFriction(at, block);
   LoadHand(model, block, s.hand);
   Clock clock(counts);
   for (int i = 0; i < model.substeps; ++i) {

@@ -25,6 +25,7 @@ constexpr double kMaxCorrection = 1.0;  // m/s
 constexpr double kContactCfm = 1e-5;
 constexpr double kFrictionCfm = 1e-6;
 constexpr double kSpinCfm = 1e-2;  // (rad/s) / (N m)
+constexpr double kLeastFriction = 1e-5;
 // A point inherits the force of an old one this near on the same collider.
 constexpr double kSameContact = 8e-3;  // m
 // What forces may close beyond the present speed: 14 m/s^2 over a step of 1/120 s. With less,
@@ -163,11 +164,15 @@ void OdeEnv::SetFriction(const ActiveContact& contact, dContact& joint) const {
   for (int k = 0; k < 3; ++k) joint.fdir1[k] = along[k];
 }
 
-// Soft fingers: a motor that stops the object's spin about the normal, as far as the normal force
-// of the substep before allows; a new contact has none yet. (ODE's own rolling friction
-// brings rows for both tangents too, and no softness, which the parallel rows of a face need.)
+// Soft fingers: a motor that stops the object's spin about the normal, as far as the forces of the
+// substep before allow; a new contact has none yet. (ODE's own rolling friction brings rows for
+// both tangents too, and no softness, which the parallel rows of a face need.)
 void OdeEnv::ResistSpin(const ActiveContact& contact) {
-  const double most = physics_.torsional_friction * contact.inherited.normal;
+  const double force = contact.inherited.normal;
+  const double slide = ToVector(contact.inherited.friction).norm();
+  const double used = slide / std::max(physics_.friction, kLeastFriction);
+  const double most =
+      physics_.torsional_friction * std::sqrt(std::max(force * force - used * used, 0.0));
   if (!(most > 0)) return;
   const Vector3d& normal = contact.point.normal;
   const dJointID motor = dJointCreateAMotor(world_, arena_.contact_joints());
