@@ -15,8 +15,13 @@ WORKERS ?= 0#                      ## threads (0: one per processor); results do
 SEED ?= 1#                         ## seed of everything random
 LAUNCH ?= #                        ## starts trainings on several processes, e.g. "mpirun -n 4"
 SCALE ?= quick#                    ## size of the run: quick, desk or paper
-CONFIG ?= data/config/$(SCALE).toml#  ## sizes and hyper-parameters of all stages; a later file wins
+CONFIG ?= $(CONFIG_$(SCALE))#  ## sizes and hyper-parameters of all stages; a later file wins
 OUT ?= results/$(SCALE)$(if $(filter builtin,$(OBJECTS)),,-$(notdir $(OBJECTS:%/=%)))#  ## folder of the run
+
+# The configuration files of a size, a later one winning.
+CONFIG_quick := data/config/desk.toml data/config/quick.toml
+CONFIG_desk  := data/config/desk.toml
+CONFIG_paper := data/config/paper.toml
 
 # Recursive calls use all processors unless the user gave -j.
 JOBS = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(shell nproc))

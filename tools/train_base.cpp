@@ -10,7 +10,7 @@ using namespace dexremoe;
 int main(int argc, char** argv) {
   Options options("train_base", "Train the base policy with PPO.",
                   "train_base --objects=objects.csv --out=base.h5 --curve=base.csv --samples=2e6 "
-                  "--config=data/config/quick.toml");
+                  "--config=data/config/desk.toml");
   StageOptions stage;
   PolicyOptions policy;
   stage.Register(options);
