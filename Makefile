@@ -36,6 +36,7 @@ include mk/build.mk
 include mk/test.mk
 include mk/bench.mk
 include mk/experiment.mk
+include mk/ablate.mk
 
 .PHONY: help
 help:  ## this list

@@ -1,0 +1,48 @@
+# `make ablate`: which parts of the desk recipe earn their place. Each is switched off in turn, on the cube of
+# `make cube`, over several seeds; the table shows the deterministic policies on the paper's task.
+
+ABLATE_SAMPLES ?= 30000000
+ABLATE_SEEDS   ?= 1 2
+
+switch_all                := #
+switch_no_progress_reward := --task.c_progress=0
+switch_no_fall_penalty    := --task.c_fall=0
+switch_no_end_of_jams     := --task.goal_timeout=0
+switch_no_jam_penalty     := --task.c_jam=0
+switch_no_near_goals      := --task.near_share=0
+switch_no_curriculum      := --ppo.curriculum=false
+switch_goal_as_it_is      := --task.goal_shown=3.1416
+switch_60_decisions       := --task.action_repeat=1 --ppo.gamma=0.9967
+switch_actions_shown      := --task.observe=action
+switch_no_goal_vector     := --task.extra_inputs=joint_speed,tip_position,tip_contact,wait_clock
+switch_no_joint_speed     := --task.extra_inputs=goal_vector,tip_position,tip_contact,wait_clock
+switch_no_tip_position    := --task.extra_inputs=goal_vector,joint_speed,tip_contact,wait_clock
+switch_no_tip_contact     := --task.extra_inputs=goal_vector,joint_speed,tip_position,wait_clock
+switch_no_clock           := --task.extra_inputs=goal_vector,joint_speed,tip_position,tip_contact
+switch_point_contacts     := --task.torsion_range=0,0
+switch_friction_1         := --task.friction_range=0.9,1.1
+
+SWITCHES ?= $(sort $(patsubst switch_%,%,$(filter switch_%,$(.VARIABLES))))
+ABLATED  := $(foreach s,$(SWITCHES),$(foreach n,$(ABLATE_SEEDS),$(OUT)/$(s)-$(n)))
+
+.PHONY: ablate ablated
+ablate: deps  ## train the cube without each part of the desk recipe in turn (hours)
+	+@$(MAKE) $(JOBS) --no-print-directory build
+	$(BIN)/make_objects --recipes=data/shapes --out=meshes/shapes
+	+@$(MAKE) -j1 --no-print-directory EXPERIMENT=1 OBJECTS=meshes/shapes OUT=results/ablate \
+	  CONFIG="data/config/desk.toml data/config/cube.toml" ablated
+ablated: $(OUT)/tables/ablate.md
+
+# NAME-SEED.h5 from the switch and seed in its name; the curves lie beside it.
+switch_of = $(switch_$(firstword $(subst -, ,$(1))))
+seed_of   = $(lastword $(subst -, ,$(1)))
+$(ABLATED:%=%.h5): $(OUT)/%.h5: $(READY) | $(BIN)/train_base
+	$(BIN)/train_base $(CONFIG:%=--config=%) --seed=$(call seed_of,$*) $(SIM) $(call switch_of,$*) \
+	  --samples=$(ABLATE_SAMPLES) --objects=$(OUT)/objects.csv --out=$(OUT)/$*.running.h5 --resume \
+	  --curve=$(OUT)/$*.csv && mv $(OUT)/$*.running.h5 $@
+$(ABLATED:%=%.eval.h5): $(OUT)/%.eval.h5: $(OUT)/%.h5 | $(BIN)/evaluate
+	$(BIN)/evaluate $(COMMON) $(RUNS) $(check) $(check_lanes) $(filter --task.%,$(call switch_of,$*)) --policy=$< \
+	  --objects=$(OUT)/objects.csv --out=$@ >$(@:.h5=.txt)
+$(OUT)/tables/ablate.md: $(ABLATED:%=%.eval.h5) | $(BIN)/tabulate
+	$(BIN)/tabulate --engines --eval=$(call commas,$^) --labels=$(call commas,$(notdir $(ABLATED))) \
+	  --out=$(basename $@)
