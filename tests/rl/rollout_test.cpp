@@ -16,7 +16,7 @@ TEST(Rollout, RecordsTheLogProbabilityOfWhatItDid) {
   const ShapeRows shapes(run.trainer.state().table, run.trainer.state().normalizers.feature, 5, 6);
   Rollout rollout(ToyPpo(), run.trainer.policy(), run.env, run.pool);
   const RolloutBatch& b = rollout.Collect(run.trainer.state(), shapes.inputs(), nullptr, nullptr);
-  const Spread<float> spread(2, b.log_std.data());
+  const ActionSpread<float> spread(2, b.log_std.data());
   for (std::size_t r = 0; r < b.log_prob.size(); ++r)
     EXPECT_FLOAT_EQ(b.log_prob[r], LogProbability(spread, &b.action[2 * r], &b.mean[2 * r]));
 }
