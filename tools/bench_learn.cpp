@@ -43,7 +43,7 @@ void Run(BenchLearnOptions& o) {
 int main(int argc, char** argv) {
   using namespace dexremoe;
   Options options("bench_learn", "Times the training of policies and its parts.",
-                  "bench_learn --envs=2048,8192 --mini_epochs=3 --out=results/bench/learn.md");
+                  "bench_learn --envs=2048,8192 --precision=f32 --out=results/bench/learn.md");
   BenchLearnOptions o;
   o.Register(options);
   return RunTool(options, argc, argv, [&] { Run(o); });

@@ -30,32 +30,57 @@ TaskObject ForTask(const GraspedObject& object, const TaskOptions& task) {
 }  // namespace
 
 void LearnBenchOptions::Register(Options& options) {
+  options.Add("precision", &precision, "of the networks").Choices({"f32", "bf16"});
   options.Add("envs", &envs, "numbers of environments").Range(1, 1 << 20);
-  options.Add("mini_epochs", &mini_epochs, "numbers of passes over a batch").Range(1, 100);
+  options.Add("mini_epochs", &mini_epochs, "passes over a batch").Range(1, 100);
+  options.Add("more_epochs", &more_epochs, "other numbers of passes, with --more_epochs_envs alone")
+      .Range(1, 100);
+  options.Add("more_epochs_envs", &more_epochs_envs, "environments").Range(1, 1 << 20);
+  options.Add("paper", &paper, "time one iteration of the paper's size, too");
   options.Add("horizon", &horizon, "steps per environment and iteration").Range(1, 4096);
   options.Add("minibatch", &minibatch, "rows per optimiser step, at most those of a batch")
       .Range(1, 1 << 24);
   options.Add("hidden", &hidden, "width of the policy's hidden layers").Range(1, 8192);
   options.Add("slices", &slices, "time slices of each part").Range(1, 1000);
   options.Add("slice", &slice, "seconds of a time slice; at least one iteration").Range(0, 60);
+  options.Add("peer", &peer, "program that times the update on libtorch").NotStored();
   options
-      .Add("peer", &peer,
-           "program that times the update on libtorch, for the last of --mini_epochs")
-      .NotStored();
+      .Add("assumed_peaks", &assumed_peaks,
+           "bfloat16 rates of another core, GFLOP/s, to work out its limit for")
+      .Range(1, 1e6);
   options.Add("seed", &seed, "of all random numbers");
 }
 
 void LearnBenchOptions::MakeQuick() {
   envs = {64, 128};
-  mini_epochs = {2};
+  mini_epochs = 2;
+  more_epochs = {1};
+  more_epochs_envs = 64;
+  paper = false;
   minibatch = 512;
   hidden = 32;
   slices = 2;
   slice = 0.02;
 }
 
-PpoOptions LearnBenchOptions::Ppo(int num_envs, int epochs) const {
+std::vector<LearnBenchCase> LearnBenchOptions::Cases() const {
+  std::vector<LearnBenchCase> cases;
+  for (const std::string& p : precision) {
+    for (const int n : envs)
+      cases.push_back({Ppo(n, mini_epochs, p), slices, !peer.empty(), false});
+    for (const int epochs : more_epochs)
+      cases.push_back({Ppo(more_epochs_envs, epochs, p), slices, false, false});
+    if (!paper) continue;
+    PpoOptions papers;
+    papers.precision = p;
+    cases.push_back({papers, 1, false, true});
+  }
+  return cases;
+}
+
+PpoOptions LearnBenchOptions::Ppo(int num_envs, int epochs, const std::string& in_precision) const {
   PpoOptions ppo;
+  ppo.precision = in_precision;
   ppo.envs = num_envs;
   ppo.horizon = horizon;
   ppo.minibatch =

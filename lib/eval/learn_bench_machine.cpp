@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "base/error.h"
+#include "nn/bf16_product.h"
 #include "nn/layers.h"
+#include "nn/precision.h"
 
 namespace dexremoe {
 namespace {
@@ -21,6 +23,36 @@ double SecondsOf(clockid_t clock) {
 }
 
 Cost Now() { return {SecondsOf(CLOCK_MONOTONIC), SecondsOf(CLOCK_PROCESS_CPUTIME_ID)}; }
+
+constexpr std::int64_t kSize = 1024;  // of the matrices whose products show the peak
+
+void Multiply(const float* a, const float* b, float* c) {
+  Gemm(false, false, kSize, kSize, kSize, 1.0f, a, kSize, b, kSize, 0.0f, c, kSize);
+}
+
+void Multiply(const BFloat16* a, const BFloat16* b, BFloat16* c) {
+  Bf16Product product{kSize, kSize, kSize};
+  product.lda = product.ldb = kSize;
+  RunProduct(product, a, b, nullptr, c);
+}
+
+// Of one operation, in matrices whose elements are all `value`.
+template <typename T>
+Cost CostOf(ThreadPool& pool, T value, double seconds) {
+  constexpr int kProductsPerWorker = 4;  // short waits at the end of a round
+  const std::vector<T> a(kSize * kSize, value), b(kSize * kSize, value);
+  std::vector<std::vector<T>> c(pool.workers(), std::vector<T>(kSize * kSize));
+  const int products = kProductsPerWorker * pool.workers();
+  const Stopwatch stopwatch;
+  double operations = 0;
+  do {
+    pool.ParallelFor(products,
+                     [&](int, int worker) { Multiply(a.data(), b.data(), c[worker].data()); });
+    operations += 2.0 * kSize * kSize * kSize * products;
+  } while (stopwatch.Read().wall < seconds);
+  const Cost spent = stopwatch.Read();
+  return {spent.wall / operations, spent.cpu / operations};
+}
 
 }  // namespace
 
@@ -57,23 +89,9 @@ Cost Stopwatch::Read() const {
   return {now.wall - start_.wall, now.cpu - start_.cpu};
 }
 
-Cost ProductCost(ThreadPool& pool, double seconds) {
-  constexpr std::int64_t kSize = 1024;
-  constexpr int kProductsPerWorker = 4;  // short waits at the end of a round
-  const std::vector<float> a(kSize * kSize, 0.5f), b(kSize * kSize, 0.25f);
-  std::vector<std::vector<float>> c(pool.workers(), std::vector<float>(kSize * kSize));
-  const int products = kProductsPerWorker * pool.workers();
-  const Stopwatch stopwatch;
-  double operations = 0;
-  do {
-    pool.ParallelFor(products, [&](int, int worker) {
-      Gemm(false, false, kSize, kSize, kSize, 1.0f, a.data(), kSize, b.data(), kSize, 0.0f,
-           c[worker].data(), kSize);
-    });
-    operations += 2.0 * kSize * kSize * kSize * products;
-  } while (stopwatch.Read().wall < seconds);
-  const Cost spent = stopwatch.Read();
-  return {spent.wall / operations, spent.cpu / operations};
+Cost ProductCost(ThreadPool& pool, const std::string& precision, double seconds) {
+  if (ResolvePrecision(precision) == "bf16") return CostOf<BFloat16>(pool, {0x3f00}, seconds);
+  return CostOf<float>(pool, 0.5f, seconds);
 }
 
 }  // namespace dexremoe

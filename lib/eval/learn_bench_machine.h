@@ -1,6 +1,8 @@
 // What learning costs and what the machine gives: operations, peak rate, memory.
 #pragma once
 
+#include <string>
+
 #include "base/thread_pool.h"
 #include "nn/params.h"
 
@@ -33,8 +35,8 @@ class Stopwatch {
   Cost start_;
 };
 
-// What one operation of float32 products of 1024 x 1024 matrices (oneDNN) takes, one product at a
-// time on every thread of the pool, over at least `seconds`.
-Cost ProductCost(ThreadPool& pool, double seconds);
+// What one operation of products of 1024 x 1024 matrices (oneDNN) takes in `precision` (f32 or
+// bf16), one product at a time on every thread of the pool, over at least `seconds`.
+Cost ProductCost(ThreadPool& pool, const std::string& precision, double seconds);
 
 }  // namespace dexremoe

@@ -67,9 +67,9 @@ PeerUpdate RunPeer(const std::string& program, const PpoOptions& ppo, const Poli
       OutputOf(program,
                fmt::format("OMP_NUM_THREADS={0} OPENBLAS_NUM_THREADS={0} {1} --workers={0} "
                            "--envs={2} --horizon={3} --minibatch={4} --mini_epochs={5} "
-                           "--hidden={6} --seconds={7}",
+                           "--hidden={6} --precision={7} --seconds={8}",
                            workers, Quoted(program), ppo.envs, ppo.horizon, ppo.minibatch,
-                           ppo.mini_epochs, hidden, seconds)));
+                           ppo.mini_epochs, hidden, ppo.precision, seconds)));
 }
 
 }  // namespace dexremoe

@@ -16,9 +16,9 @@ struct PeerUpdate {
   double peak_memory = 0;     // GiB, of its process
 };
 
-// Starts `program` with these sizes on `workers` threads and waits for its one CSV line. It warms
-// up, then updates for `seconds`, at least once. Throws Error naming the program when it cannot be
-// started, fails, or prints anything else.
+// Starts `program` with these sizes and ppo.precision (f32 or bf16) on `workers` threads and waits
+// for its one CSV line. It warms up, then updates for `seconds`, at least once. Throws Error naming
+// the program when it cannot be started, fails, or prints anything else.
 PeerUpdate RunPeer(const std::string& program, const PpoOptions& ppo, const PolicyOptions& policy,
                    int workers, double seconds);
 

@@ -4,16 +4,15 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "eval/learn_bench.h"
+#include "eval/learn_bench_limit.h"
 #include "eval/learn_bench_peer.h"
 #include "eval/sim_scenes.h"
 
 namespace dexremoe {
 namespace {
 
-bool IsPapers(const PpoOptions& ppo) {
-  const PpoOptions paper;
-  return ppo.envs == paper.envs && ppo.horizon == paper.horizon &&
-         ppo.minibatch == paper.minibatch && ppo.mini_epochs == paper.mini_epochs;
+std::string RowName(const PpoOptions& ppo) {
+  return fmt::format("{} x {}, {}", ppo.envs, ppo.mini_epochs, ppo.precision);
 }
 
 class LearnBench {
@@ -27,8 +26,8 @@ class LearnBench {
                                 pool_.workers(), options_.hidden, options_.horizon);
     if (options_.peer.empty()) result_.notes += "libtorch is left out: no --peer was given.\n";
     FindCube();
-    for (const int envs : options_.envs)
-      for (const int epochs : options_.mini_epochs) Measure(options_.Ppo(envs, epochs));
+    for (const LearnBenchCase& each : options_.Cases()) Measure(each);
+    DescribeLimits();
     return std::move(result_);
   }
 
@@ -45,8 +44,9 @@ class LearnBench {
   }
 
   // Training, the machine's peak and the peer take their slices in turn.
-  void Measure(const PpoOptions& ppo) {
-    LogInfo("{} environments, {} mini-epochs", ppo.envs, ppo.mini_epochs);
+  void Measure(const LearnBenchCase& which) {
+    const PpoOptions& ppo = which.ppo;
+    LogInfo("{} environments, {} mini-epochs, {}", ppo.envs, ppo.mini_epochs, ppo.precision);
     const PolicyOptions policy = options_.Policy();
     ResetPeakMemory();
     TimedTraining training(ppo, policy, hand_, task_, cube_, options_.seed, pool_);
@@ -56,19 +56,17 @@ class LearnBench {
     double memory = 0;
     SliceTimes peak;
     std::vector<PeerUpdate> peers;
-    const bool compare = !options_.peer.empty() && ppo.mini_epochs == options_.mini_epochs.back();
-    for (int slice = 0; slice < options_.slices; ++slice) {
+    for (int slice = 0; slice < which.slices; ++slice) {
       training.RunSlice(options_.slice);
       if (slice == 0) memory = PeakMemory();
-      peak.Add(ProductCost(pool_, options_.slice), 1);
-      if (compare)
+      peak.Add(ProductCost(pool_, ppo.precision, options_.slice), 1);
+      if (which.compare)
         peers.push_back(RunPeer(options_.peer, ppo, policy, pool_.workers(), options_.slice));
     }
-    const std::string row = fmt::format("{} x {}", ppo.envs, ppo.mini_epochs);
-    RecordTraining(row, training, memory);
-    RecordOperations(row, ppo, training, peak);
-    if (!peers.empty()) RecordPeer(row, training, peers);
-    if (IsPapers(ppo)) RecordPapers(training, memory);
+    if (which.paper) return RecordPapers(ppo, training, memory);
+    RecordTraining(RowName(ppo), training, memory);
+    RecordOperations(ppo, training, peak);
+    if (!peers.empty()) RecordPeer(ppo, training, peers);
   }
 
   void Record(const std::string& table, const std::string& row, const std::string& column,
@@ -100,10 +98,11 @@ class LearnBench {
     Record("rate", row, "peak memory, GiB", memory, 3);
   }
 
-  void RecordOperations(const std::string& row, const PpoOptions& ppo,
-                        const TimedTraining& training, const SliceTimes& peak_times) {
-    const double pass = ForwardOperations(training.layout()) * ppo.envs;
-    const double update = 3 * pass * ppo.horizon * ppo.mini_epochs;
+  void RecordOperations(const PpoOptions& ppo, const TimedTraining& training,
+                        const SliceTimes& peak_times) {
+    const std::string row = RowName(ppo);
+    const double forward = ForwardOperations(training.layout()), samples = training.samples();
+    const double sample = OperationsPerSample(forward, ppo);
     const std::vector<double> peak = RatesOf(1, Seconds(peak_times));
     const auto rates = [&](const char* part, const SliceTimes& times, double operations) {
       const std::vector<double> rate = RatesOf(operations, Seconds(times));
@@ -113,14 +112,34 @@ class LearnBench {
       Record("operations", row, std::string(part) + ", % of peak", share, 0.01, 0);
     };
     Record("operations", row, "peak", peak, 1e9, 1);
-    rates("inference", training.forward(), pass);
-    rates("update", training.update(), update);
-    // One more forward pass gives the values of the last states.
-    rates("end to end", training.iteration(), update + pass * (ppo.horizon + 1));
+    rates("inference", training.forward(), forward * ppo.envs);
+    rates("update", training.update(), 3 * forward * ppo.mini_epochs * samples);
+    rates("end to end", training.iteration(), sample * samples);
+    const double rate = SpreadOf(RatesOf(samples, Seconds(training.iteration()))).median;
+    limits_.push_back({ppo, pool_.workers(), sample, SpreadOf(peak).median, rate});
   }
 
-  void RecordPeer(const std::string& row, const TimedTraining& training,
+  // Of the fastest size with the main number of mini-epochs, in each precision.
+  void DescribeLimits() {
+    const LearnLimit* last = nullptr;
+    for (const std::string& precision : options_.precision) {
+      const LearnLimit* best = nullptr;
+      for (const LearnLimit& each : limits_)
+        if (each.ppo.precision == precision && each.ppo.mini_epochs == options_.mini_epochs &&
+            (best == nullptr || each.rate > best->rate))
+          best = &each;
+      if (best == nullptr) continue;
+      result_.limits += LimitText(*best) + "\n";
+      last = best;
+    }
+    std::vector<double> peaks = options_.assumed_peaks;
+    for (double& peak : peaks) peak *= 1e9;
+    if (last != nullptr && !peaks.empty()) result_.limits += OtherCoreText(*last, peaks);
+  }
+
+  void RecordPeer(const PpoOptions& ppo, const TimedTraining& training,
                   const std::vector<PeerUpdate>& peers) {
+    const std::string row = RowName(ppo);
     const double parameters = static_cast<double>(training.layout().size());
     SliceTimes times;
     double memory = 0;
@@ -147,8 +166,8 @@ class LearnBench {
     if (result_.notes.find(note) == std::string::npos) result_.notes += note;
   }
 
-  void RecordPapers(const TimedTraining& training, double memory) {
-    const std::string row = "32768 x 8, minibatch 16384, 5 mini-epochs";
+  void RecordPapers(const PpoOptions& ppo, const TimedTraining& training, double memory) {
+    const std::string& row = ppo.precision;
     Record("paper", row, "s", training.iteration().wall, 1, 1);
     Record("paper", row, "of them update, s", training.update().wall, 1, 1);
     Record("paper", row, "processor s", training.iteration().cpu, 1, 1);
@@ -160,6 +179,7 @@ class LearnBench {
   const TaskOptions& task_;
   ThreadPool pool_;
   GraspedObject cube_;
+  std::vector<LearnLimit> limits_;
   LearnBenchResult result_;
 };
 
@@ -177,25 +197,30 @@ std::string LearnBenchResult::Markdown() const {
     const std::string body = MarkdownOf(measurements, table, corner);
     if (!body.empty()) text += fmt::format("\n## {}\n\n{}\n\n{}", title, reading, body);
   };
-  section("Rates", "rate", "environments x mini-epochs",
-          "The base policy on lanes with a 55 mm cube in every hand, 1000 samples/s: forward "
-          "passes of all environments alone; the PPO update alone, of a whole batch; rollouts "
-          "with physics and updates, end to end. Median [lowest, highest] of time slices; one "
-          "worker by processor time, several by the clock. A minibatch is 16384 rows or, where "
-          "smaller, the batch, unless chosen otherwise. Peak memory is the whole process.");
-  section(
-      "Operations", "operations", "environments x mini-epochs",
-      "GFLOP/s, with time as above. A forward pass counts two operations per weight and row, an "
-      "update three times as many per row and mini-epoch; the peak is float32 products of "
-      "1024 x 1024 matrices (oneDNN), one at a time on every thread, in the same turns.");
-  section("Against libtorch", "peer", "environments x mini-epochs",
-          "The same update with the last number of mini-epochs, 1000 samples/s: network, "
-          "minibatch, loss, gradient clipping, Adam and adaptive rate are the same, and threads as "
-          "many. Ratios slice by slice: median [lowest, highest]; above one this program is "
-          "faster. libtorch's threads wait by spinning, which counts as processor time and costs "
-          "it most where other programs run; on a busy machine one worker compares best.");
-  section("The paper's iteration", "paper", "environments x steps",
-          "Rollout and update: by the clock, and processor time of all threads.");
+  const char* const size = "environments x mini-epochs";
+  section("Rates", "rate", size,
+          "The base policy on lanes with a 55 mm cube in every hand, networks in float32 (f32) or "
+          "bfloat16 (bf16), 1000 samples/s: forward passes of all environments alone; the PPO "
+          "update alone, of a whole batch; rollouts with physics and updates, end to end. Median "
+          "[lowest, highest] of time slices; one worker by processor time, several by the clock. A "
+          "minibatch is 16384 rows or, where smaller, the batch, unless chosen otherwise. Peak "
+          "memory is the whole process.");
+  section("Operations", "operations", size,
+          "GFLOP/s, with time as above. A forward pass counts two operations per weight and row, "
+          "an update three times as many per row and mini-epoch; the peak is products of "
+          "1024 x 1024 matrices in the row's precision (oneDNN), one at a time on every thread, in "
+          "the same turns.");
+  if (!limits.empty()) text += "\n" + limits;
+  section("Against libtorch", "peer", size,
+          "The same update in the same precision (libtorch's bf16 is its autocast), 1000 "
+          "samples/s: network, minibatch, loss, gradient clipping, Adam and adaptive rate are the "
+          "same, and threads as many. Ratios slice by slice: median [lowest, highest]; above one "
+          "this program is faster. libtorch's threads wait by spinning, which counts as processor "
+          "time and costs it most where other programs run; on a busy machine one worker compares "
+          "best.");
+  section("The paper's iteration", "paper", "precision",
+          "32768 environments x 8 steps, minibatch 16384, 5 mini-epochs, once: rollout and update "
+          "by the clock, and processor time of all threads.");
   return text;
 }
 

@@ -1,5 +1,6 @@
 // The layers of nn/layers.h on bfloat16: bias and activation ride in the product.
 #include <algorithm>
+#include <bit>
 #include <vector>
 
 #include "nn/bf16_product.h"
@@ -7,6 +8,19 @@
 
 namespace dexremoe {
 namespace {
+
+// Calls piece(begin, size) for n rows cut into powers of two. Row counts vary (episodes that time
+// out, ends of minibatches), and each would be a product to build and keep on every thread: so a
+// few serve every count.
+template <typename Piece>
+void ForEachPiece(std::int64_t n, const Piece& piece) {
+  for (std::int64_t begin = 0; begin < n;) {
+    const auto size =
+        static_cast<std::int64_t>(std::bit_floor(static_cast<std::uint64_t>(n - begin)));
+    piece(begin, size);
+    begin += size;
+  }
+}
 
 Bf16Product ForwardProduct(std::int64_t n, std::int64_t c, std::int64_t k) {
   Bf16Product product{n, k, c};
@@ -28,10 +42,25 @@ void InputGradient(std::int64_t n, std::int64_t c, std::int64_t k, const BFloat1
       std::copy_n(w + j * c + first, columns, packed.data() + j * columns);
     w = packed.data();
   }
-  Bf16Product product{n, columns, k};
-  product.lda = k;
-  product.ldb = columns;
-  RunProduct(product, dy, w, nullptr, dx);
+  ForEachPiece(n, [&](std::int64_t begin, std::int64_t rows) {
+    Bf16Product product{rows, columns, k};
+    product.lda = k;
+    product.ldb = columns;
+    RunProduct(product, dy + begin * k, w, nullptr, dx + begin * columns);
+  });
+}
+
+// dw += dy^T x.
+void WeightGradient(std::int64_t n, std::int64_t c, std::int64_t k, const BFloat16* x,
+                    const BFloat16* dy, float* dw) {
+  ForEachPiece(n, [&](std::int64_t begin, std::int64_t rows) {
+    Bf16Product product{k, c, rows};
+    product.transpose_a = true;
+    product.lda = k;
+    product.ldb = c;
+    product.wide = product.accumulate = true;
+    RunProduct(product, dy + begin * k, x + begin * c, nullptr, dw);
+  });
 }
 
 }  // namespace
@@ -40,17 +69,21 @@ template <>
 void LinearActivate<BFloat16>(Activation activation, std::int64_t n, std::int64_t c, std::int64_t k,
                               const BFloat16* x, const BFloat16* w, const BFloat16* b,
                               BFloat16* y) {
-  Bf16Product product = ForwardProduct(n, c, k);
-  product.activation = activation;
-  RunProduct(product, x, w, b, y);
+  ForEachPiece(n, [&](std::int64_t begin, std::int64_t rows) {
+    Bf16Product product = ForwardProduct(rows, c, k);
+    product.activation = activation;
+    RunProduct(product, x + begin * c, w, b, y + begin * k);
+  });
 }
 
 template <>
 void LinearForward<BFloat16>(std::int64_t n, std::int64_t c, std::int64_t k, const BFloat16* x,
                              const BFloat16* w, const BFloat16* b, float* y) {
-  Bf16Product product = ForwardProduct(n, c, k);
-  product.wide = true;
-  RunProduct(product, x, w, b, y);
+  ForEachPiece(n, [&](std::int64_t begin, std::int64_t rows) {
+    Bf16Product product = ForwardProduct(rows, c, k);
+    product.wide = true;
+    RunProduct(product, x + begin * c, w, b, y + begin * k);
+  });
 }
 
 template <>
@@ -59,12 +92,7 @@ void LinearBackward<BFloat16>(std::int64_t n, std::int64_t c, std::int64_t k, co
                               float* db, std::int64_t first) {
   if (dx != nullptr) InputGradient(n, c, k, w, dy, dx, first);
   if (dw == nullptr) return;
-  Bf16Product product{k, c, n};
-  product.transpose_a = true;
-  product.lda = k;
-  product.ldb = c;
-  product.wide = product.accumulate = true;
-  RunProduct(product, dy, x, nullptr, dw);
+  WeightGradient(n, c, k, x, dy, dw);
   for (std::int64_t i = 0; i < n; ++i) AddTo(k, dy + i * k, db);
 }
 

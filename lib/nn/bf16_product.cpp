@@ -94,13 +94,20 @@ struct ThreadState {
   std::vector<std::byte> scratch;
 };
 
+ThreadState& State() {
+  thread_local ThreadState state;
+  return state;
+}
+
 }  // namespace
+
+std::size_t NumProducts() { return State().primitives.size(); }
 
 void RunProduct(const Bf16Product& product, const BFloat16* a, const BFloat16* b,
                 const BFloat16* bias, void* c) {
   DEX_CHECK(product.wide || !product.accumulate);
   KeepToOneThread();
-  thread_local ThreadState state;
+  ThreadState& state = State();
   const auto [found, fresh] = state.primitives.try_emplace(product, product);
   Primitive& primitive = found->second;
   if (fresh && state.scratch.size() < primitive.scratch_size())

@@ -1,6 +1,7 @@
 // Matrix products of bfloat16 with sums in float, through oneDNN (AMX or avx512_bf16).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "nn/bfloat16.h"
@@ -9,7 +10,8 @@
 namespace dexremoe {
 
 // C [m,n] = activation(op(A) op(B) + bias), or C += op(A) op(B); row-major, op is the transpose
-// when asked for. Everything but the addresses; a primitive is built once per thread and value.
+// when asked for. Everything but the addresses; a primitive is built once per thread and value, and
+// kept: callers see to it that the values are few.
 struct Bf16Product {
   std::int64_t m = 0, n = 0, k = 0;
   bool transpose_a = false, transpose_b = false;
@@ -26,5 +28,8 @@ struct Bf16Product {
 // float or BFloat16 as product.wide says. Needs HasNativeBfloat16 to be fast, not to be right.
 void RunProduct(const Bf16Product& product, const BFloat16* a, const BFloat16* b,
                 const BFloat16* bias, void* c);
+
+// How many different products the calling thread has run.
+std::size_t NumProducts();
 
 }  // namespace dexremoe

@@ -11,6 +11,11 @@ bool HasNativeBfloat16() {
   return (isa & dnnl_cpu_isa_avx512_core_bf16) == dnnl_cpu_isa_avx512_core_bf16;
 }
 
+std::vector<std::string> NativePrecisions() {
+  return HasNativeBfloat16() ? std::vector<std::string>{"f32", "bf16"}
+                             : std::vector<std::string>{"f32"};
+}
+
 std::string ResolvePrecision(const std::string& choice) {
   const bool native = HasNativeBfloat16();
   if (choice == "auto") return native ? "bf16" : "f32";

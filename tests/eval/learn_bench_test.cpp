@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "eval/learn_bench_limit.h"
 #include "eval/learn_bench_peer.h"
 #include "policy/policy.h"
 
@@ -22,14 +23,15 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::ThrowsMessage;
 
-// A shell script in place of the libtorch program: it prints `line`, after a look at its arguments.
+// A shell script in place of the libtorch program: it prints `line`, in which $7 is the argument
+// for the precision, after a look at the others.
 class FakePeer {
  public:
   explicit FakePeer(const std::string& line)
       : path_(fs::temp_directory_path() /
               ("dexremoe it's a peer " + std::to_string(getpid()) + ".sh")) {
     std::ofstream(path_) << "#!/bin/sh\n[ \"$OMP_NUM_THREADS $1\" = '2 --workers=2' ] || exit 3\n"
-                         << "echo '" << line << "'\n";
+                         << "echo \"" << line << "\"\n";
     fs::permissions(path_, fs::perms::owner_all);
   }
   ~FakePeer() { fs::remove(path_); }
@@ -106,19 +108,57 @@ TEST(LearnBench, APeerWithAnotherNetworkIsRefused) {
 TEST(LearnBench, AMinibatchIsNeverLargerThanTheBatch) {
   const LearnBenchOptions options;
   for (const int envs : {1, 512, 2048, 32768}) {
-    const PpoOptions ppo = options.Ppo(envs, 1);
+    const PpoOptions ppo = options.Ppo(envs, 1, "f32");
     EXPECT_NO_THROW(ppo.Check());
     EXPECT_EQ(ppo.minibatch, std::min(16384, 8 * envs));
   }
+}
+
+TEST(LearnBench, CasesAreAllSizesInEveryPrecisionAndThePapersIterationOnce) {
+  LearnBenchOptions options;
+  options.precision = {"f32", "bf16"};
+  options.envs = {512, 2048};
+  options.more_epochs = {1};
+  options.peer = "peer";
+  std::vector<std::string> found;
+  for (const LearnBenchCase& each : options.Cases())
+    found.push_back(fmt::format("{} x {}, {}{}{}", each.ppo.envs, each.ppo.mini_epochs,
+                                each.ppo.precision, each.compare ? ", peer" : "",
+                                each.paper ? ", paper" : ""));
+  EXPECT_THAT(found, testing::ElementsAre("512 x 3, f32, peer", "2048 x 3, f32, peer",
+                                          "2048 x 1, f32", "32768 x 5, f32, paper",
+                                          "512 x 3, bf16, peer", "2048 x 3, bf16, peer",
+                                          "2048 x 1, bf16", "32768 x 5, bf16, paper"));
+}
+
+TEST(LearnBench, ASampleCostsItsStepItsShareOfTheLastPassAndThreePassesPerMiniEpoch) {
+  PpoOptions ppo;
+  ppo.horizon = 4;
+  ppo.mini_epochs = 2;
+  EXPECT_EQ(OperationsPerSample(100, ppo), 100 + 25 + 600);
+}
+
+// Two cores: 2 of every 4 s are products; the rest stays, or vanishes, on a core with twice a
+// core's peak.
+TEST(LearnBench, AFasterCoreShortensProductsAlone) {
+  LearnLimit limit;
+  limit.workers = 2;
+  limit.operations = 10;
+  limit.peak = 20;
+  limit.rate = 1;
+  EXPECT_DOUBLE_EQ(limit.AtPeak(), 2);
+  EXPECT_DOUBLE_EQ(limit.OfCore(10), 0.5);
+  EXPECT_DOUBLE_EQ(limit.OfCore(20), 1 / 1.5);
+  EXPECT_DOUBLE_EQ(limit.OfCoreAtMost(20), 2);
+  EXPECT_THAT(LimitText(limit), HasSubstr(", 50 %"));
 }
 
 TEST(LearnBench, EveryTableHasItsNumbers) {
   LearnBenchOptions options;
   options.MakeQuick();
   options.envs = {64};
-  options.mini_epochs = {1, 2};
   const auto policy = MakePolicy<float>(options.Policy().Base(66, 23, 11));
-  const FakePeer peer(fmt::format("9.9,blas,{},1,1000,1000,0.1", policy->layout().size()));
+  const FakePeer peer(fmt::format("9.9 $7,blas,{},1,1000,1000,0.1", policy->layout().size()));
   options.peer = peer.path();
   const LearnBenchResult result = RunLearnBench(options, LoadHand({}), TaskOptions(), 2);
   for (const char* table : {"rate", "operations", "peer"})
@@ -132,11 +172,16 @@ TEST(LearnBench, EveryTableHasItsNumbers) {
       EXPECT_LT(m.value, update) << m.row;
     }
   }
-  // The peer is compared at the last number of mini-epochs alone.
-  EXPECT_THAT(MarkdownOf(result.measurements, "peer", ""),
-              AllOf(HasSubstr("| 64 x 2 "), Not(HasSubstr("| 64 x 1 "))));
-  // The paper's sizes were not among them.
-  EXPECT_THAT(result.Markdown(), Not(HasSubstr("The paper's iteration")));
+  const std::string text = result.Markdown();
+  for (const std::string& precision : NativePrecisions()) {
+    // The peer computes in the same precision, at the main number of mini-epochs alone.
+    EXPECT_THAT(text, HasSubstr("libtorch 9.9 --precision=" + precision));
+    EXPECT_THAT(MarkdownOf(result.measurements, "peer", ""),
+                AllOf(HasSubstr("| 64 x 2, " + precision), Not(HasSubstr("| 64 x 1, "))));
+    EXPECT_THAT(text, HasSubstr("In " + precision + ", 64 environments x 2 mini-epochs take"));
+  }
+  EXPECT_THAT(text, HasSubstr("Arithmetic, not measurement"));
+  EXPECT_THAT(text, Not(HasSubstr("The paper's iteration")));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/thread_pool.h"
+#include "nn/bf16_product.h"
 #include "nn/kernels.h"
 #include "nn/mlp.h"
 #include "nn/precision.h"
@@ -179,6 +180,32 @@ TEST_F(Bf16Mlp, BitsDoNotDependOnTheNumberOfWorkersAndNoThreadsAreAdded) {
   });
   EXPECT_EQ(equal, std::vector<int>(8, 1));
   EXPECT_EQ(threads(), before + 2);
+}
+
+// 300 counts of rows, of nine powers of two. Every layer has three products: forward, gradient of
+// inputs, gradient of weights. The thread is new: products are counted, and kept, by thread.
+TEST_F(Bf16Mlp, ManyCountsOfRowsShareFewProducts) {
+  const auto params = Rounded(params_), x = Rounded(x_), dy = Rounded(dy_);
+  std::size_t products = 0;
+  std::thread([&] {
+    for (int rows = 1; rows <= 300; ++rows) Pass<BFloat16>(mlp_, rows, params, x, dy, kFirst);
+    products = NumProducts();
+  }).join();
+  EXPECT_LE(products, 9u * 3 * mlp_.layers());
+}
+
+// A row's result may round otherwise in another count of rows, but is the same row.
+TEST_F(Bf16Mlp, RowsOfAnyCountAreThoseOfALargerOne) {
+  const auto params = Rounded(params_), x = Rounded(x_), dy = Rounded(dy_);
+  const Pass<BFloat16> all = Stored();
+  for (const int rows : {1, 7, 300, 511, 513}) {
+    const Pass<BFloat16> some(mlp_, rows, params, x, dy, kFirst);
+    const auto head = [&](const std::vector<BFloat16>& of, std::size_t count) {
+      return Widened({of.begin(), of.begin() + count});
+    };
+    EXPECT_LT(Distance(Widened(some.y), head(all.y, some.y.size())), kUnit) << rows;
+    EXPECT_LT(Distance(Widened(some.dx), head(all.dx, some.dx.size())), kUnit) << rows;
+  }
 }
 
 TEST_F(Bf16Mlp, BackwardAddsToTheGradients) {

@@ -51,7 +51,7 @@ TEST_F(SimTools, BenchSimWritesWhatItPrints) {
 TEST_F(SimTools, BenchLearnWritesWhatItPrints) {
   ASSERT_EQ(Run("bench_learn --quick --out=" + Path("a.md") + " --csv=" + Path("a.csv"), "a"), 0);
   EXPECT_EQ(Slurp("a.md"), Slurp("a.txt"));
-  EXPECT_THAT(Slurp("a.md"), HasSubstr("| 128 x 2"));
+  EXPECT_THAT(Slurp("a.md"), HasSubstr("| 128 x 2, f32"));
   EXPECT_THAT(Slurp("a.csv"), StartsWith("table,row,column,value,spread\nrate,"));
 }
 

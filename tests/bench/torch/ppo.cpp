@@ -1,5 +1,7 @@
 #include "ppo.h"
 
+#include <ATen/autocast_mode.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -57,13 +59,23 @@ void Learner::Prepare(const Batch& batch) {
 double Learner::Step(const Batch& batch, const Shapes& shapes, const torch::Tensor& pick) {
   const Rows rows = {batch.rows.obs.index_select(0, pick), batch.rows.phys.index_select(0, pick),
                      batch.rows.object.index_select(0, pick)};
-  const auto out = policy_->forward(shapes, rows);
+  const auto out = Forward(shapes, rows);
   adam_.zero_grad();
   Loss(batch, pick, out).backward();
   const double kl = Divergence(pick, out.mean.detach());
   torch::nn::utils::clip_grad_norm_(policy_->parameters(), options_.max_grad_norm);
   adam_.step();
   return kl;
+}
+
+// Autocast is on for the forward pass alone; the backward pass follows its types.
+PolicyImpl::Output Learner::Forward(const Shapes& shapes, const Rows& rows) {
+  at::autocast::set_autocast_cpu_dtype(at::kBFloat16);
+  at::autocast::set_cpu_enabled(options_.bfloat16);
+  const auto out = policy_->forward(shapes, rows);
+  at::autocast::set_cpu_enabled(false);
+  at::autocast::clear_cache();  // of weights as bfloat16: the next step has others
+  return {out.mean.to(torch::kFloat32), out.value.to(torch::kFloat32)};
 }
 
 torch::Tensor Learner::Loss(const Batch& batch, const torch::Tensor& pick,

@@ -15,6 +15,7 @@ struct UpdateOptions {
   double clip = 0.2, critic_coef = 4, bounds_coef = 1e-4, bounds = 1.1, max_grad_norm = 1;
   double learning_rate = 5e-3, kl_threshold = 0.02;
   double rate_factor = 1.5, rate_min = 1e-6, rate_max = 1e-2;
+  bool bfloat16 = false;  // layers under autocast, which leaves parameters and the loss in float32
 };
 
 // Experience of T steps of N environments; R = T N rows, time-major.
@@ -41,6 +42,7 @@ class Learner {
 
  private:
   void Prepare(const Batch& batch);
+  PolicyImpl::Output Forward(const Shapes& shapes, const Rows& rows);
   // One optimiser step on the rows `pick` [n]; returns the sum of the rows' KL divergences.
   double Step(const Batch& batch, const Shapes& shapes, const torch::Tensor& pick);
   torch::Tensor Loss(const Batch& batch, const torch::Tensor& pick,

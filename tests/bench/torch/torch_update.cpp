@@ -1,7 +1,7 @@
 // Times the PPO update on libtorch, for bench_learn, with random experience of the given sizes.
 //
 //   torch_update --workers=2 --envs=2048 --horizon=8 --minibatch=16384 --mini_epochs=3
-//                --hidden=512,512 --seconds=0.5
+//                --hidden=512,512 --precision=f32 --seconds=0.5
 //
 // prints one CSV line: libtorch version, BLAS in use, parameters, updates timed, seconds and
 // processor seconds per update, peak memory (GiB). Exits 2 on wrong usage.
@@ -111,6 +111,8 @@ void Run(std::map<std::string, std::string>& values) {
   UpdateOptions options;
   options.minibatch = whole("minibatch");
   options.mini_epochs = whole("mini_epochs");
+  options.bfloat16 = values["precision"] == "bf16";
+  if (!options.bfloat16 && values["precision"] != "f32") Usage("--precision: expected f32 or bf16");
   if (sizes.hidden.empty() || options.minibatch < 1) Usage("--hidden, --minibatch: expected more");
 
   Policy policy(sizes);
@@ -141,8 +143,8 @@ void Run(std::map<std::string, std::string>& values) {
 
 int main(int argc, char** argv) {
   std::map<std::string, std::string> values = {
-      {"workers", "1"},     {"envs", "2048"},      {"horizon", "8"},  {"minibatch", "16384"},
-      {"mini_epochs", "3"}, {"hidden", "512,512"}, {"seconds", "0.5"}};
+      {"workers", "1"},     {"envs", "2048"},      {"horizon", "8"},     {"minibatch", "16384"},
+      {"mini_epochs", "3"}, {"hidden", "512,512"}, {"precision", "f32"}, {"seconds", "0.5"}};
   torch_peer::Parse(argc, argv, values);
   torch_peer::Run(values);
   return std::fflush(stdout) == 0 ? 0 : 1;
