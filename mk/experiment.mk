@@ -216,13 +216,19 @@ $(OUT)/figures/episode.mp4: $(OUT)/eval/gate.h5 | $(BIN)/render
 
 # --- Publishing ---------------------------------------------------------------------------------
 
+LEARN_COLUMNS := successes_per_600,drop_rate,mean_angle,goal_angle
+
 .PHONY: publish
 publish:  ## copy the tables and figures of a finished run to results/tables and paper_figs
 	@mkdir -p results/tables paper_figs
 	cp $(OUT)/tables/table1.md $(OUT)/tables/table1.csv $(OUT)/tables/table1.tex results/tables/
 	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png curves.png per_object.png tsne.png strip.png) paper_figs/
 	@for run in cube six; do for table in results/$$run*/tables/learned.md; do [ ! -f $$table ] || \
-	  cp $$table results/tables/learned_$$(basename $$(dirname $$(dirname $$table))).md; done; \
-	  [ ! -f results/$$run/figures/base.png ] || cp results/$$run/figures/base.png paper_figs/$$run.png; done
+	  cp $$table results/tables/learned_$$(basename $$(dirname $$(dirname $$table))).md; done; done
+	@runs=$$(ls -d results/{cube,six,desk*}/curves/base.csv 2>/dev/null | cut -d/ -f2 || true); \
+	[ -z "$$runs" ] || for x in samples seconds; do \
+	  $(BIN)/plot --kind=curves --x=$$x --columns=$(LEARN_COLUMNS) --out=$(OUT)/figures/learning_$$x \
+	    --labels=$$(echo $$runs | tr ' ' ,) --in=$$(printf 'results/%s/curves/base.csv\n' $$runs | paste -sd,); \
+	  cp $(OUT)/figures/learning_$$x.png paper_figs/; done
 	@for table in results/transfer*/tables/engines*.md; do [ ! -f $$table ] || \
 	  cp $$table results/tables/$$(basename $$(dirname $$(dirname $$table)))_$$(basename $$table); done

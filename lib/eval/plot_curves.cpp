@@ -25,7 +25,10 @@ constexpr Axis kAxes[] = {
     {"learning_rate", "learning rate", 1, true},
     {"successes_per_600", "successes per 600 steps", 1, false},
     {"explained_variance", "explained variance", 1, false},
+    {"goal_angle", "widest goal (rad)", 1, false},
+    {"velocity_tolerance", "speeds allowed / the task's", 1, false},
     {"samples", "samples (millions)", 1e-6, false},
+    {"seconds", "minutes of training", 1.0 / 60, false},
 };
 constexpr std::size_t kDefaultPanels = 8;  // the first of kAxes
 
