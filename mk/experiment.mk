@@ -42,17 +42,6 @@ six: deps  ## the same on one mesh of each category of OBJECTS (an hour)
 	$(LEARN) OUT=$(call seeded,six) CONFIG="data/config/desk.toml data/config/six.toml"
 learned: $(OUT)/tables/learned.md $(OUT)/figures/base.png
 
-# What a policy trained on lanes is worth on the other engines: on the cube, or on one mesh of each
-# category of OBJECTS=DIR.
-.PHONY: transfer transfer-products
-transfer: deps  ## train on lanes and evaluate on lanes, ODE and MuJoCo (about 15 minutes)
-	+@$(MAKE) $(JOBS) --no-print-directory build
-	$(BIN)/make_objects --recipes=data/shapes --out=meshes/shapes
-	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 ENGINE=lanes CONFIG=data/config/transfer.toml \
-	  OBJECTS=$(if $(filter builtin,$(OBJECTS)),meshes/shapes,$(OBJECTS)) \
-	  OUT=results/transfer$(if $(filter builtin,$(OBJECTS)),,-$(notdir $(OBJECTS:%/=%))) transfer-products
-transfer-products: $(OUT)/tables/engines.md $(OUT)/tables/engines_near.md
-
 TABLES  := $(OUT)/tables/table1.md
 FIGURES := $(addprefix $(OUT)/figures/,curves.png objects.png parts.png per_object.png tsne.png \
   hand.png strip.png episode.mp4)
@@ -155,25 +144,18 @@ $(OUT)/tables/table1.md: $(EVAL_FILES) data/paper_tables.csv | $(BIN)/tabulate
 	$(BIN)/tabulate --eval=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" \
 	  --paper=data/paper_tables.csv --out=$(basename $@)
 
-# On every engine: the strict task, and the nearer goals and looser stop that policies learn first,
-# where successes are many. MuJoCo at about 1 ms is the referee, where it is installed.
+# A base policy on every engine. MuJoCo at about 1 ms is the referee, where it is installed.
 CHECKED := lanes ode $(if $(wildcard /usr/include/mujoco/mujoco.h),mujoco)
 check := --eval.tolerances=0.4 --split=all
 check_lanes  := --sim.engine=lanes
 check_ode    := --sim.engine=ode
 check_mujoco := --sim.engine=mujoco --sim.substeps=16
-near := --task.goal_angle=1.0 --task.velocity_tolerance=4
 CHECK_FILES := $(CHECKED:%=$(OUT)/eval/%.h5)
 $(CHECK_FILES): $(OUT)/eval/%.h5: $(OUT)/base.h5 | $(BIN)/evaluate
 	@mkdir -p $(@D)
 	$(BIN)/evaluate $(COMMON) $(RUNS) $(check) $(check_$*) --policy=$< \
 	  --objects=$(OUT)/objects.csv --out=$@ >$(@:.h5=.txt)
-$(CHECKED:%=$(OUT)/eval/%_near.h5): $(OUT)/eval/%_near.h5: $(OUT)/base.h5 | $(BIN)/evaluate
-	@mkdir -p $(@D)
-	$(BIN)/evaluate $(COMMON) $(RUNS) $(check) $(check_$*) $(near) --policy=$< \
-	  --objects=$(OUT)/objects.csv --out=$@ >$(@:.h5=.txt)
-$(OUT)/tables/engines.md: $(CHECK_FILES) | $(BIN)/tabulate
-	$(BIN)/tabulate --engines --eval=$(call commas,$^) --labels=$(call commas,$(CHECKED)) --out=$(basename $@)
+
 # The least that a policy has to beat.
 CONTROLS := $(OUT)/eval/hold.h5 $(OUT)/eval/start.h5
 $(OUT)/eval/start.h5: $(OUT)/untrained.h5
@@ -184,8 +166,6 @@ $(CONTROLS): $(OUT)/eval/%.h5: $(READY) | $(BIN)/evaluate
 $(OUT)/tables/learned.md: $(CONTROLS) $(CHECK_FILES) | $(BIN)/tabulate
 	$(BIN)/tabulate --engines --eval=$(call commas,$^) --out=$(basename $@) \
 	  --labels="Open-loop hold,Untrained,$(call commas,$(CHECKED:%=Base:%))"
-$(OUT)/tables/engines_near.md: $(CHECKED:%=$(OUT)/eval/%_near.h5) | $(BIN)/tabulate
-	$(BIN)/tabulate --engines --eval=$(call commas,$^) --labels=$(call commas,$(CHECKED)) --out=$(basename $@)
 
 $(OUT)/tsne.h5: $(OUT)/gate.h5 $(OUT)/shape_net.h5 | $(BIN)/embed_gate
 	$(BIN)/embed_gate $(COMMON) --workers=$(WORKERS) --gate=$< --net=$(OUT)/shape_net.h5 \
@@ -230,5 +210,3 @@ publish:  ## copy the tables and figures of a finished run to results/tables and
 	  $(BIN)/plot --kind=curves --x=$$x --columns=$(LEARN_COLUMNS) --out=$(OUT)/figures/learning_$$x \
 	    --labels=$$(echo $$runs | tr ' ' ,) --in=$$(printf 'results/%s/curves/base.csv\n' $$runs | paste -sd,); \
 	  cp $(OUT)/figures/learning_$$x.png paper_figs/; done
-	@for table in results/transfer*/tables/engines*.md; do [ ! -f $$table ] || \
-	  cp $$table results/tables/$$(basename $$(dirname $$(dirname $$table)))_$$(basename $$table); done
