@@ -43,7 +43,8 @@ struct TaskOptions {
   double action_scale = 0.1;  // rad per control step at a = 1
   double ema = 1.0;           // alpha
   double target_leash = 0.3;  // rad, targets stay this close to the joint
-  int action_repeat = 1;      // control steps that an action lasts (one decision)
+  // NOTE(paper): one control step. Longer actions learn more from each sample.
+  int action_repeat = 1;  // control steps that an action lasts (one decision)
   // What o_t shows of the last three commands: "action" (the averaged action that was executed) or
   // "target" (the joint targets, scaled like the joints; what the paper's lineage shows).
   std::string observe = "action";
@@ -64,6 +65,7 @@ struct TaskOptions {
   // drawn from scale_range when the grasp was found.
   std::vector<double> mass_range = {0.06, 0.10};  // kg
   std::vector<double> friction_range = {0.9, 1.1};
+  // NOTE(paper): silent.
   std::vector<double> torsion_range = {0.0, 0.0};  // m, torsional friction; 0: point contacts
   std::vector<double> scale_range = {1.0, 1.0};
   std::vector<double> com_range = {0.0, 0.0};  // m, offset of the centre of mass, each axis
