@@ -40,7 +40,7 @@ cube: deps  ## train on a single cube by the desk recipe and check it on every e
 six: deps  ## the same on one mesh of each category of OBJECTS (an hour)
 	+@$(MAKE) $(JOBS) --no-print-directory build
 	$(LEARN) OUT=$(call seeded,six) CONFIG="data/config/desk.toml data/config/six.toml"
-learned: $(OUT)/tables/learned.md $(OUT)/figures/base.png
+learned: $(OUT)/tables/learned.md $(OUT)/figures/base.png $(OUT)/figures/growth.png
 
 TABLES  := $(OUT)/tables/table1.md
 FIGURES := $(addprefix $(OUT)/figures/,curves.png objects.png parts.png per_object.png tsne.png \
@@ -99,12 +99,12 @@ ready: $(READY)
 # --- Training -----------------------------------------------------------------------------------
 # A training writes its checkpoints to NAME.running.h5 and takes up from there after a kill. NAME.h5
 # is the last state; NAME.best.h5 the best one: highest successes per episode at the hardest task
-# that the curriculum reached.
+# that the curriculum reached; snapshots/NAME/SAMPLES.h5 are states on the way.
 
 # $(1): tool and its inputs
 train = mkdir -p $(OUT)/curves && \
   $(LAUNCH) $(BIN)/$(1) $(COMMON) $(SIM) --objects=$(OUT)/objects.csv --out=$(@:.h5=.running.h5) --resume \
-    --best=$(@:.h5=.best.h5) --curve=$(OUT)/curves/$(notdir $(@:.h5=.csv)) \
+    --best=$(@:.h5=.best.h5) --snapshots=$(OUT)/snapshots/$(basename $(notdir $@)) --curve=$(OUT)/curves/$(notdir $(@:.h5=.csv)) \
     --tensorboard=$(OUT)/tensorboard/$(basename $(notdir $@)) && mv $(@:.h5=.running.h5) $@
 
 EXPERTS := generalist airplane train animal
@@ -179,6 +179,19 @@ $(OUT)/figures/curves.png: $(OUT)/gate.h5 | $(BIN)/plot
 	  --out=$(basename $@)
 $(OUT)/figures/base.png: $(OUT)/base.h5 | $(BIN)/plot
 	$(BIN)/plot --kind=curves --in=$(OUT)/curves/base.csv --labels="Base" --out=$(basename $@)
+# The states on the way, each evaluated on the paper's task. $(1): runs; their evaluations and labels
+# stand in the same order.
+grown = $(foreach r,$(1),$(sort $(wildcard results/$(r)/eval/growth/*.h5)))
+grown_labels = $(foreach r,$(1),$(patsubst %,$(r),$(wildcard results/$(r)/eval/growth/*.h5)))
+$(OUT)/eval/growth/done: $(OUT)/base.h5 | $(BIN)/evaluate
+	@mkdir -p $(@D)
+	for policy in $(OUT)/snapshots/base/*.h5; do \
+	  $(BIN)/evaluate $(COMMON) $(RUNS) $(check) $(check_lanes) --policy=$$policy \
+	    --objects=$(OUT)/objects.csv --out=$(@D)/$$(basename $$policy) >/dev/null; done
+	@touch $@
+$(OUT)/figures/growth.png: $(OUT)/eval/growth/done | $(BIN)/plot
+	$(BIN)/plot --kind=growth --in=$(call commas,$(call grown,$(RUN))) \
+	  --labels=$(call commas,$(call grown_labels,$(RUN))) --out=$(basename $@)
 $(OUT)/figures/per_object.png: $(EVAL_FILES) | $(BIN)/plot
 	$(BIN)/plot --kind=bars --in=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" --out=$(basename $@)
 $(OUT)/figures/tsne.png: $(OUT)/tsne.h5 | $(BIN)/plot

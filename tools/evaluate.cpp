@@ -109,6 +109,7 @@ void Run(const EvaluateOptions& o, const Options& options) {
         "paper's",
         o.task.goal_angle, o.task.velocity_tolerance);
   EvalFile file = DescribeEval(o, setup);
+  if (runner) file.samples = runner->samples();
   file.runs = Evaluate(setup, o.eval, act, pool);
   WriteEval(o.out, file, provenance);
   std::fputs(ReportOf(file).c_str(), stdout);

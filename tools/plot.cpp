@@ -1,4 +1,5 @@
-// Figures through gnuplot: learning curves, successes per object, the map of the gate's weights.
+// Figures through gnuplot: learning curves, successes per object and against samples, the map of
+// the gate's weights.
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -18,8 +19,11 @@ struct PlotOptions {
   double smooth = 0.05, tolerance = 0.4;
 
   void Register(Options& options) {
-    options.Add("kind", &kind, "what to draw").Required().Choices({"curves", "bars", "tsne"});
-    options.Add("in", &in, "curves: CSV files; bars: dexremoe.eval; tsne: dexremoe.embedding")
+    options.Add("kind", &kind, "what to draw")
+        .Required()
+        .Choices({"curves", "bars", "growth", "tsne"});
+    options
+        .Add("in", &in, "curves: CSV files; bars, growth: dexremoe.eval; tsne: dexremoe.embedding")
         .Required();
     options.Add("labels", &labels, "names of the files in the legend; the file names when absent");
     options.Add("out", &out, "figure without ending: OUT.png, .pdf, .dat and .gp are written")
@@ -28,7 +32,7 @@ struct PlotOptions {
     options.Add("x", &x, "curves: column on the abscissa");
     options.Add("columns", &columns, "curves: one panel each; the usual ones when absent");
     options.Add("smooth", &smooth, "curves: smooth over this part of the rows").Range(0, 1);
-    options.Add("tolerance", &tolerance, "bars: which tolerance, rad").Range(0, 3.15);
+    options.Add("tolerance", &tolerance, "bars, growth: which tolerance, rad").Range(0, 3.15);
     options.Add("color", &color, "tsne: colour by").Choices({"cluster", "category", "expert"});
   }
 };
@@ -54,15 +58,15 @@ Figure Draw(const PlotOptions& o) {
     return EmbeddingFigure(ReadEmbedding(o.in.front()), o.color);
   }
   std::vector<Curve> curves;
-  std::vector<BarMethod> methods;
+  std::vector<EvaluatedMethod> methods;
   for (std::size_t i = 0; i < o.in.size(); ++i) {
     if (o.kind == "curves")
       curves.push_back({labels[i], CsvTable::Read(o.in[i])});
     else
       methods.push_back({labels[i], ReadEval(o.in[i])});
   }
-  return o.kind == "curves" ? CurvesFigure(curves, o.x, o.columns, o.smooth)
-                            : BarsFigure(methods, o.tolerance);
+  if (o.kind == "curves") return CurvesFigure(curves, o.x, o.columns, o.smooth);
+  return o.kind == "growth" ? GrowthFigure(methods, o.tolerance) : BarsFigure(methods, o.tolerance);
 }
 
 }  // namespace

@@ -144,6 +144,7 @@ void WriteEval(const std::string& path, const EvalFile& eval, const Provenance& 
   std::vector<double> tolerance;
   for (const EvalRun& run : eval.runs) tolerance.push_back(run.tolerance);
   file.WriteString("policy", eval.policy, {"", "", "policy file"});
+  file.WriteScalar("samples", eval.samples, {"1", "", "that its training stage has seen"});
   file.WriteString("engine", eval.engine, {"", "", "simulation engine"});
   file.WriteScalar<std::int32_t>("substeps", eval.substeps,
                                  {"1", "", "physics steps per control step"});
@@ -163,6 +164,7 @@ EvalFile ReadEval(const std::string& path) {
   const H5Reader file(path, kEvalFormat);
   EvalFile eval;
   eval.policy = file.ReadString("policy");
+  eval.samples = file.ReadScalar<std::int64_t>("samples");
   eval.engine = file.ReadString("engine");
   eval.substeps = file.ReadScalar<std::int32_t>("substeps");
   eval.seed = file.ReadScalar<std::uint64_t>("seed");

@@ -10,7 +10,7 @@
 
 namespace dexremoe {
 
-inline constexpr H5Format kEvalFormat{"dexremoe.eval", 1};
+inline constexpr H5Format kEvalFormat{"dexremoe.eval", 2};
 
 // The episodes at one success tolerance. The tolerance decides when goals switch, so each
 // tolerance has episodes of its own.
@@ -25,9 +25,10 @@ struct EvalObject {
 };
 
 struct EvalFile {
-  std::string policy;  // file name
-  std::string engine;  // simulation engine
-  int substeps = 0;    // physics steps per control step
+  std::string policy;        // file name
+  std::int64_t samples = 0;  // that its training stage has seen
+  std::string engine;        // simulation engine
+  int substeps = 0;          // physics steps per control step
   std::uint64_t seed = 0;
   double push = 0;  // N; 0 = no disturbance
   std::vector<EvalObject> objects;

@@ -10,21 +10,9 @@ namespace {
 constexpr std::size_t kMostBars = 40;  // objects; beyond that points with error bars
 constexpr double kGroupWidth = 0.8;    // of the distance between two objects
 
-const EvalRun& RunAt(const BarMethod& method, double tolerance) {
-  const EvalRun* run = FindRun(method.eval, tolerance);
-  if (run == nullptr) {
-    std::string found;
-    for (const EvalRun& r : method.eval.runs)
-      found += fmt::format("{}{}", found.empty() ? "" : ", ", r.tolerance);
-    Fail("bars: {}: expected an evaluation at tolerance {} rad, found {}", method.label, tolerance,
-         found);
-  }
-  return *run;
-}
-
-void CheckSameObjects(const std::vector<BarMethod>& methods) {
+void CheckSameObjects(const std::vector<EvaluatedMethod>& methods) {
   const auto& first = methods.front().eval.objects;
-  for (const BarMethod& method : methods) {
+  for (const EvaluatedMethod& method : methods) {
     const auto& objects = method.eval.objects;
     bool same = objects.size() == first.size();
     for (std::size_t i = 0; same && i < first.size(); ++i) same = objects[i].name == first[i].name;
@@ -35,7 +23,7 @@ void CheckSameObjects(const std::vector<BarMethod>& methods) {
 }
 
 // Objects in ascending order of S under the last method; ties by name.
-std::vector<int> SortedObjects(const std::vector<BarMethod>& methods, double tolerance) {
+std::vector<int> SortedObjects(const std::vector<EvaluatedMethod>& methods, double tolerance) {
   const EvalRun& run = RunAt(methods.back(), tolerance);
   const auto& objects = methods.back().eval.objects;
   std::vector<int> order(objects.size());
@@ -47,7 +35,7 @@ std::vector<int> SortedObjects(const std::vector<BarMethod>& methods, double tol
   return order;
 }
 
-std::string BarData(const std::vector<BarMethod>& methods, double tolerance,
+std::string BarData(const std::vector<EvaluatedMethod>& methods, double tolerance,
                     const std::vector<int>& order) {
   std::string data = "# place object S low high\n";
   const double step = kGroupWidth / static_cast<double>(methods.size());
@@ -66,7 +54,7 @@ std::string BarData(const std::vector<BarMethod>& methods, double tolerance,
   return data;
 }
 
-std::string ObjectTics(const std::vector<BarMethod>& methods, const std::vector<int>& order) {
+std::string ObjectTics(const std::vector<EvaluatedMethod>& methods, const std::vector<int>& order) {
   if (order.size() > kMostBars)
     return fmt::format("set xtics 0,10,{} nomirror\nset xlabel \"objects, ascending under {}\"\n",
                        order.size(),
@@ -79,7 +67,7 @@ std::string ObjectTics(const std::vector<BarMethod>& methods, const std::vector<
   return tics + ")\n";
 }
 
-std::string PlotLines(const std::vector<BarMethod>& methods, bool bars) {
+std::string PlotLines(const std::vector<EvaluatedMethod>& methods, bool bars) {
   std::string script = "plot ";
   for (std::size_t m = 0; m < methods.size(); ++m) {
     const std::string color = PaletteColor(static_cast<int>(m));
@@ -104,7 +92,19 @@ std::string PlotLines(const std::vector<BarMethod>& methods, bool bars) {
 
 }  // namespace
 
-Figure BarsFigure(const std::vector<BarMethod>& methods, double tolerance) {
+const EvalRun& RunAt(const EvaluatedMethod& method, double tolerance) {
+  const EvalRun* run = FindRun(method.eval, tolerance);
+  if (run == nullptr) {
+    std::string found;
+    for (const EvalRun& r : method.eval.runs)
+      found += fmt::format("{}{}", found.empty() ? "" : ", ", r.tolerance);
+    Fail("{}: expected an evaluation at tolerance {} rad, found {}", method.label, tolerance,
+         found);
+  }
+  return *run;
+}
+
+Figure BarsFigure(const std::vector<EvaluatedMethod>& methods, double tolerance) {
   CheckSameObjects(methods);
   const std::vector<int> order = SortedObjects(methods, tolerance);
   const bool bars = order.size() <= kMostBars;

@@ -1,16 +1,18 @@
 #include "rl/run_files.h"
 
+#include <cmath>
 #include <filesystem>
 
+#include "base/error.h"
 #include "rl/checkpoint.h"
 
 namespace dexremoe {
 
-RunFiles::RunFiles(RunPaths paths, Provenance provenance, double checkpoint_minutes,
+RunFiles::RunFiles(RunPaths paths, Provenance provenance, const RunPeriods& periods,
                    const TrainState& start)
     : paths_(std::move(paths)),
       provenance_(std::move(provenance)),
-      period_(60 * checkpoint_minutes),
+      periods_(periods),
       curve_(paths_.curve, start.curve),
       events_(paths_.tensorboard, start.samples),
       last_(Clock::now()) {
@@ -23,9 +25,22 @@ void RunFiles::Add(const Trainer& trainer, double samples) {
   curve_.Add(row, trainer.time(), samples);
   events_.Add(row, trainer.time(), samples);
   if (trainer.improved()) best_ = trainer.state();
+  const auto count = [&](double s) { return std::floor(s / periods_.snapshot_samples); };
+  const double now = static_cast<double>(trainer.state().samples);
+  if (!paths_.snapshots.empty() && count(now) > count(now - samples))
+    WriteSnapshot(trainer.state());
 }
 
-bool RunFiles::Due() const { return Clock::now() - last_ > period_; }
+void RunFiles::WriteSnapshot(const TrainState& state) const {
+  std::filesystem::create_directories(paths_.snapshots);
+  WriteCheckpoint(fmt::format("{}/{:012d}.h5", paths_.snapshots, state.samples), state,
+                  provenance_);
+}
+
+bool RunFiles::Due() const {
+  return std::chrono::duration<double>(Clock::now() - last_).count() >
+         60 * periods_.checkpoint_minutes;
+}
 
 void RunFiles::Save(const TrainState& last) {
   if (best_) WriteCheckpoint(paths_.best, *best_, provenance_);

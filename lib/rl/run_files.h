@@ -1,4 +1,5 @@
-// What a training leaves behind as it goes: last and best checkpoint, learning curve, events.
+// What a training leaves behind as it goes: last and best checkpoint, states on the way, learning
+// curve, events.
 #pragma once
 
 #include <chrono>
@@ -13,22 +14,30 @@
 
 namespace dexremoe {
 
-// Where to write; empty paths of curve and tensorboard write nothing.
+// Where to write; empty paths of snapshots, curve and tensorboard write nothing.
 struct RunPaths {
   std::string out;          // last state, HDF5
   std::string best;         // best state, HDF5
   std::string curve;        // CSV
   std::string tensorboard;  // folder
+  std::string snapshots;    // folder: the state at every so many samples, as SAMPLES.h5
+};
+
+// How often to write.
+struct RunPeriods {
+  double checkpoint_minutes = 0;
+  double snapshot_samples = 1;  // > 0
 };
 
 class RunFiles {
  public:
   // `start` is the state that the training starts from or resumes at; the best file of an earlier
   // run is removed when it has no best state.
-  RunFiles(RunPaths paths, Provenance provenance, double checkpoint_minutes,
+  RunFiles(RunPaths paths, Provenance provenance, const RunPeriods& periods,
            const TrainState& start);
 
-  // After each iteration of `samples` environment steps.
+  // After each iteration of `samples` environment steps. The first state past every multiple of
+  // snapshot_samples is written, without environments.
   void Add(const Trainer& trainer, double samples);
   // Whether checkpoint_minutes have gone by since the last Save.
   bool Due() const;
@@ -39,9 +48,10 @@ class RunFiles {
 
  private:
   using Clock = std::chrono::steady_clock;
+  void WriteSnapshot(const TrainState& state) const;
   RunPaths paths_;
   Provenance provenance_;
-  std::chrono::duration<double> period_;
+  RunPeriods periods_;
   CurveFile curve_;
   CurveEvents events_;
   std::optional<TrainState> best_;  // not yet written

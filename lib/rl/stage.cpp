@@ -144,6 +144,10 @@ void StageOptions::Register(Options& options) {
       .NotStored();
   options.Add("curve", &curve, "learning curve to write (CSV)").NotStored();
   options.Add("tensorboard", &tensorboard, "folder for TensorBoard's event files").NotStored();
+  options.Add("snapshots", &snapshots, "folder for the states on the way").NotStored();
+  options.Add("snapshot_samples", &snapshot_samples, "samples between those")
+      .Range(1, 1e15)
+      .NotStored();
   options.Add("samples", &samples, "environment steps to train for").Required().Range(0, 1e15);
   options.Add("seed", &seed, "of all random streams");
   options.Add("workers", &workers, "threads (of each process); 0: as many as processors")
@@ -181,9 +185,10 @@ TrainState RunStage(const StageOptions& stage, const Options& options, const Sta
                   pool, ranks);
   std::optional<RunFiles> files;
   if (ranks.rank() == 0)
-    files.emplace(RunPaths{stage.out, BestPath(stage), stage.curve, stage.tensorboard},
-                  MakeProvenance(options, stage.seed, Inputs(stage, kind, entries)),
-                  stage.checkpoint_minutes, trainer.state());
+    files.emplace(
+        RunPaths{stage.out, BestPath(stage), stage.curve, stage.tensorboard, stage.snapshots},
+        MakeProvenance(options, stage.seed, Inputs(stage, kind, entries)),
+        RunPeriods{stage.checkpoint_minutes, stage.snapshot_samples}, trainer.state());
   LogInfo("{}: {} objects, {} environments, {} parameters of which {} in training",
           trainer.state().stage, objects.size(), stage.ppo.envs, trainer.policy().layout().size(),
           TrainableSet(trainer.policy().layout(), trainer.policy().trainable()).size());

@@ -24,6 +24,8 @@ struct StageOptions {
   std::string best;         // empty: beside `out`
   std::string curve;        // CSV; empty for none
   std::string tensorboard;  // folder of event files; empty for none
+  std::string snapshots;    // folder of states on the way; empty for none
+  double snapshot_samples = 5e6;
   double samples = 0;
   std::uint64_t seed = 1;
   int workers = 0;

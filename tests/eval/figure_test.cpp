@@ -15,6 +15,7 @@
 #include "eval/plots.h"
 #include "io/atomic_file.h"
 #include "io/png.h"
+#include "sample_eval.h"
 
 namespace dexremoe {
 namespace {
@@ -154,6 +155,24 @@ TEST_F(Figures, BarsAreSortedUnderTheLastMethod) {
   }
   EXPECT_THROW(BarsFigure({{"Base", BarEval(5, 1)}}, 0.1), Error);
   EXPECT_THROW(BarsFigure({{"Base", BarEval(5, 1)}, {"Ours", BarEval(6, 1)}}, 0.4), Error);
+}
+
+TEST_F(Figures, GrowthJoinsTheEvaluationsOfALabelInOrderOfTheirSamples) {
+  const auto after = [](double millions, double skill) {
+    EvalFile eval = SampleEval(skill);
+    eval.samples = static_cast<std::int64_t>(1e6 * millions);
+    return eval;
+  };
+  const Figure figure =
+      GrowthFigure({{"a", after(20, 30)}, {"b", after(5, 20)}, {"a", after(10, 10)}}, 0.4);
+  std::vector<double> samples;
+  std::istringstream lines(figure.data);
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty() && line[0] != '#') samples.push_back(std::stod(line));
+  EXPECT_EQ(samples, (std::vector<double>{10, 20, 5}));
+  WriteFigure(Stem("growth"), figure);
+  EXPECT_GT(Ink(Stem("growth.png")), 0.01);
+  EXPECT_THROW(GrowthFigure({{"a", after(1, 1)}}, 0.3), Error);
 }
 
 TEST_F(Figures, TheMapIsDrawnInEveryColouring) {

@@ -22,8 +22,8 @@ void IterateAndSave(ToyRun& run, RunFiles& files, int count) {
 
 // Files NAME.h5 and NAME.best.h5.
 RunFiles FilesOf(const std::string& name, const ToyRun& run) {
-  return RunFiles({name + ".h5", name + ".best.h5", "", ""}, ToyProvenance(), 0,
-                  run.trainer.state());
+  return RunFiles({name + ".h5", name + ".best.h5", "", "", name + ".snapshots"}, ToyProvenance(),
+                  {0, 5000}, run.trainer.state());
 }
 
 TEST(RunFiles, TheBestFileHoldsTheStateOfMostSuccesses) {
@@ -83,6 +83,26 @@ TEST(RunFiles, AHarderTaskOutranksMoreSuccessesOnceItsEpisodesFillTheWindow) {
     progress = best.progress;
   }
   EXPECT_GE(moves, 3);  // the curriculum moves where a goal was reached
+}
+
+TEST(RunFiles, SnapshotsAreTheFirstStatesPastEveryMultipleAndResumedRunsAddNoOthers) {
+  const TemporaryFolder folder("snapshots");
+  {
+    ToyRun first(ToyBase());
+    RunFiles files = FilesOf(folder / "run", first);
+    IterateAndSave(first, files, 4);
+  }
+  ToyRun second(ReadCheckpoint(folder / "run.h5"));
+  RunFiles files = FilesOf(folder / "run", second);
+  IterateAndSave(second, files, 4);
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder / "run.snapshots"))
+    names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  // 1920 samples an iteration: the multiples of 5000 are passed in the third, sixth and eighth.
+  EXPECT_EQ(names, (std::vector<std::string>{"000000005760.h5", "000000011520.h5",
+                                             "000000015360.h5"}));
+  EXPECT_EQ(ReadCheckpoint(folder / "run.snapshots/000000011520.h5").curve.size(), 6u);
 }
 
 TEST(RunFiles, AKillBetweenBestAndLastLeavesFilesThatAResumedRunMakesEqual) {
