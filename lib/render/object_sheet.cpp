@@ -38,6 +38,9 @@ Image StandingPicture(Renderer& renderer, std::vector<Item> items,
   return renderer.Draw(scene, camera, width, height);
 }
 
+// Soft enough for shading to show.
+Eigen::Vector3f ColorOf(int index) { return 0.8f * palette::Distinct(index).array() + 0.16f; }
+
 Image MeshPicture(Renderer& renderer, const SheetObject& object, const Eigen::Vector3f& color,
                   int width, int height) {
   renderer.ClearMeshes();
@@ -113,7 +116,7 @@ Image ObjectSheet(Renderer& renderer, const Fonts& fonts,
   int index = 0;
   for (const Block& block : blocks) {
     const int left = block.column * cell, top = row_top[block.row];
-    const Eigen::Vector3f color = 0.8f * palette::Distinct(index++).array() + 0.16f;
+    const Eigen::Vector3f color = ColorOf(index++);
     canvas.Box(left + 0.04 * cell, top + heading - 0.45 * size, (block.columns - 0.08) * cell,
                std::max(1.5, 0.14 * size), color, 0.07 * size);
     canvas.Text(left + 0.05 * cell, top + heading - 0.95 * size,
@@ -130,6 +133,11 @@ Image ObjectSheet(Renderer& renderer, const Fonts& fonts,
     }
   }
   return sheet;
+}
+
+Image ObjectPicture(Renderer& renderer, const SheetObject& object, int index, int width,
+                    int height) {
+  return MeshPicture(renderer, object, ColorOf(index), width, height);
 }
 
 Image PartsSheet(Renderer& renderer, const Fonts& fonts, int count, const ObjectSource& source,

@@ -20,6 +20,15 @@ Image ObjectSheet(Renderer& renderer, const Fonts& fonts,
                   const std::vector<std::string>& categories, const ObjectSource& source,
                   int columns, int width);
 
+// One object on a floor, in the colour of its category, `index` counted within kCategories.
+Image ObjectPicture(Renderer& renderer, const SheetObject& object, int index, int width,
+                    int height);
+
+// The whole data set: a band for every category, its training objects left of a line, those out of
+// distribution right of it. `entries` by category; source(i) draws entries[i]; height follows.
+Image DatasetSheet(Renderer& renderer, const Fonts& fonts, const std::vector<ObjectEntry>& entries,
+                   const ObjectSource& source, int width);
+
 // Each object twice: as a mesh and as its convex parts, moved apart by `explode` times their
 // distance from the middle. `columns` pairs side by side.
 Image PartsSheet(Renderer& renderer, const Fonts& fonts, int count, const ObjectSource& source,

@@ -148,7 +148,7 @@ TEST(BuiltinRecipes, AreClosedShellsOfFewTrianglesForSeveralSeeds) {
     GTEST_SKIP() << "run from the top of the project: " << folder << " not found";
   const auto files = FindRecipes(folder);
   std::map<std::string, int> categories;
-  for (const RecipeFile& file : files) {
+  for (const RecipeObject& file : files) {
     ++categories[file.category];
     for (const std::uint64_t seed : {1, 2}) {
       const TriMesh mesh = MeshOfRecipe(LoadRecipe(file, seed), 0.1, file.path);
