@@ -207,8 +207,6 @@ class Parser {
   }
 
   void Shape(Operation operation, RecipeLine& line) {
-    if (groups_.back().steps.empty() && operation != Operation::kAdd)
-      line.place().Fail("expected 'add' first, found something to take away from nothing");
     const std::string name = line.Word("a shape or group");
     RecipeArgs args = line.Arguments();
     if (name == "group") {
@@ -231,6 +229,8 @@ class Parser {
   }
 
   void Finish(Operation operation, Field field, RecipeArgs& args, const std::string& name) {
+    if (groups_.back().steps.empty() && operation != Operation::kAdd)
+      args.place().Fail("expected 'add' first, found something to take away from nothing");
     const double smooth = args.Number("smooth", 0);
     field = Placed(std::move(field), args);
     args.Finish(name);
