@@ -76,12 +76,12 @@ struct Block {
 };
 
 // Blocks from left to right, a new row of blocks when the next does not fit.
-std::vector<Block> LayOut(const std::vector<std::string>& categories, int columns) {
+std::vector<Block> LayOut(const std::vector<ObjectEntry>& entries, int columns) {
   std::vector<Block> blocks;
   int used = 0, row = 0;
-  for (int i = 0; i < int(categories.size());) {
-    Block block{categories[i], i, 0, 0, 0, 0};
-    while (i < int(categories.size()) && categories[i] == block.category) ++i;
+  for (int i = 0; i < int(entries.size());) {
+    Block block{entries[i].category, i, 0, 0, 0, 0};
+    while (i < int(entries.size()) && entries[i].category == block.category) ++i;
     block.count = i - block.first;
     block.columns = std::min(block.count, columns);
     if (used + block.columns > columns) {
@@ -98,10 +98,9 @@ std::vector<Block> LayOut(const std::vector<std::string>& categories, int column
 
 }  // namespace
 
-Image ObjectSheet(Renderer& renderer, const Fonts& fonts,
-                  const std::vector<std::string>& categories, const ObjectSource& source,
-                  int columns, int width) {
-  const std::vector<Block> blocks = LayOut(categories, columns);
+Image ObjectSheet(Renderer& renderer, const Fonts& fonts, const std::vector<ObjectEntry>& entries,
+                  const ObjectSource& source, int columns, int width) {
+  const std::vector<Block> blocks = LayOut(entries, columns);
   const int cell = width / columns, picture = cell * 4 / 5;
   const double size = std::clamp(cell * 0.075, 8.0, 18.0);
   const int heading = int(2.6 * size), caption = int(1.9 * size);
