@@ -191,8 +191,7 @@ SheetObject NamedBall(int i) {
 TEST_F(EpisodeViewTest, TheDataSetSheetPutsTrainingObjectsLeftOfTheLineAndTheOthersRight) {
   const auto ink_of = [&](const std::vector<const char*>& splits) {
     std::vector<ObjectEntry> entries;
-    for (const char* split : splits)
-      entries.push_back({.name = "ball", .category = "head", .split = split});
+    for (const char* split : splits) entries.push_back({"ball", "head", split, "", "", ""});
     const Image sheet = DatasetSheet(renderer_, fonts_, entries, NamedBall, 450);
     std::pair<int, int> ink;  // coloured pixels in the left and the right half
     for (int y = 0; y < sheet.height; ++y)
@@ -214,7 +213,7 @@ TEST_F(EpisodeViewTest, TheDataSetSheetPutsTrainingObjectsLeftOfTheLineAndTheOth
 TEST_F(EpisodeViewTest, ASheetGivesEveryObjectACellUnderItsCategory) {
   std::vector<ObjectEntry> entries;
   for (const char* category : {"animal", "animal", "head", "head", "head", "shoe"})
-    entries.push_back({.name = "ball", .category = category});
+    entries.push_back({"ball", category, "train", "", "", ""});
   std::vector<int> drawn;
   const ObjectSource source = [&](int i) {
     drawn.push_back(i);
