@@ -69,22 +69,27 @@ int ResolutionFor(const Recipe& recipe, const Box3& bounds, const std::string& l
   return std::clamp(static_cast<int>(kCoarse * factor), 16, kFinest);
 }
 
-// Tells the author where the stray piece (or the bubble inside) is.
-void CheckOneShell(const TriMesh& mesh, const std::string& label) {
+// The mesh without crumbs, pieces and bubbles that cuts leave in passing. What is larger tells the
+// author where the stray piece (or the bubble inside) is.
+TriMesh OneShellOf(const TriMesh& mesh, const std::string& label) {
+  constexpr double kCrumb = 1e-3;  // of the largest shell's volume
   const std::vector<int> shell = ShellOfTriangles(mesh);
   if (shell.empty()) Fail("{}: expected one closed shell, found none", label);
-  const int count = *std::max_element(shell.begin(), shell.end()) + 1;
-  if (count == 1) return;
-  std::vector<std::vector<int>> members(count);
+  std::vector<std::vector<int>> members(*std::max_element(shell.begin(), shell.end()) + 1);
   for (std::size_t t = 0; t < shell.size(); ++t) members[shell[t]].push_back(static_cast<int>(t));
-  const auto smallest =
-      std::min_element(members.begin(), members.end(),
-                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
-  const TriMesh stray = Submesh(mesh, *smallest);
-  const Eigen::Vector3d at = BoundsOf(stray).Center();
-  Fail("{}: expected one closed shell, found {}; the smallest is a {} at ({:.2f}, {:.2f}, {:.2f})",
-       label, count, MassPropertiesOf(stray).volume > 0 ? "piece" : "bubble", at.x(), at.y(),
-       at.z());
+  std::sort(members.begin(), members.end(),
+            [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  TriMesh largest = Submesh(mesh, members[0]);
+  const double crumb = kCrumb * MassPropertiesOf(largest).volume;
+  for (std::size_t i = 1; i < members.size(); ++i) {
+    const TriMesh stray = Submesh(mesh, members[i]);
+    const double volume = MassPropertiesOf(stray).volume;
+    const Eigen::Vector3d at = BoundsOf(stray).Center();
+    if (std::abs(volume) > crumb)
+      Fail("{}: expected one closed shell, found {}; one is a {} at ({:.2f}, {:.2f}, {:.2f})",
+           label, members.size(), volume > 0 ? "piece" : "bubble", at.x(), at.y(), at.z());
+  }
+  return largest;
 }
 
 }  // namespace
@@ -97,8 +102,7 @@ TriMesh MeshOfRecipe(const Recipe& recipe, double length, const std::string& lab
   const int resolution =
       recipe.resolution > 0 ? recipe.resolution : ResolutionFor(recipe, bounds, label);
   const DistanceGrid grid = FilledGrid(recipe.field, bounds, resolution);
-  TriMesh mesh = ExtractLevelSet(grid, 0);
-  CheckOneShell(mesh, label);
+  TriMesh mesh = OneShellOf(ExtractLevelSet(grid, 0), label);
   for (int round = 0; round < 2; ++round) {
     SmoothTangentially(2, mesh);
     ProjectToField(recipe.field, grid.spacing / 4, grid.spacing / 2, mesh);

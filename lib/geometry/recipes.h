@@ -59,7 +59,8 @@ Recipe ParseRecipe(const std::string& file, const std::string& text, std::uint64
                    const std::string& variant = "");
 
 // One closed manifold shell, its longest side `length` (m), centred in its bounding box.
-// Throws Error naming `label` when the recipe gives nothing or several separate shells.
+// Crumbs of less than a thousandth of its volume are left out. Throws Error naming `label` when the
+// recipe gives nothing or several separate shells.
 TriMesh MeshOfRecipe(const Recipe& recipe, double length, const std::string& label);
 
 // What stands at the top of a recipe.

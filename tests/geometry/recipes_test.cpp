@@ -199,6 +199,7 @@ TEST(MeshOfRecipe, RefusesNothingAndSeparatePieces) {
             std::string::npos);
   EXPECT_NE(error("add sphere r=1\ncut sphere r=0.5").find("bubble"), std::string::npos);
   EXPECT_NE(error("add sphere r=0.5\ncut sphere r=1"), "");
+  EXPECT_EQ(error("add sphere r=1\nadd sphere r=0.06 at=(1.2,0,0)"), "");  // a crumb
 }
 
 TEST(MeshOfRecipe, IsDeterministic) {
