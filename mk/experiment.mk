@@ -42,6 +42,14 @@ six: deps  ## the same on one mesh of each category of OBJECTS (an hour)
 	$(LEARN) OUT=$(call seeded,six) CONFIG="data/config/desk.toml data/config/six.toml"
 learned: $(OUT)/tables/learned.md $(OUT)/figures/base.png $(OUT)/figures/growth.png
 
+# All objects, whatever the run takes of them.
+.PHONY: dataset
+dataset: deps  ## draw all objects: training left of a line, out of distribution right of it
+	+@$(MAKE) $(JOBS) --no-print-directory build
+	+@$(MAKE) $(JOBS) --no-print-directory $(OUT)/figures/dataset.png
+	@mkdir -p paper_figs
+	cp $(OUT)/figures/dataset.png paper_figs/
+
 TABLES  := $(OUT)/tables/table1.md
 FIGURES := $(addprefix $(OUT)/figures/,curves.png objects.png parts.png per_object.png tsne.png \
   hand.png strip.png episode.mp4)
@@ -198,6 +206,11 @@ $(OUT)/figures/tsne.png: $(OUT)/tsne.h5 | $(BIN)/plot
 	$(BIN)/plot --kind=tsne --in=$< --out=$(basename $@)
 $(OUT)/figures/objects.png: $(OUT)/objects.mk $(call OBJECT_FILES,mesh) | $(BIN)/render
 	$(BIN)/render --kind=objects --objects=$(OUT)/objects.csv --out=$@
+$(OUT)/dataset.csv: $(OUT)/settings.txt $(CONFIG) \
+    $(if $(filter builtin,$(OBJECTS)),meshes/builtin/manifest.csv) | $(BIN)/list_objects
+	$(BIN)/list_objects $(COMMON) --per_category=0 --meshes=$(MESHES) --folder=$(OBJDIR) --out=$@
+$(OUT)/figures/dataset.png: $(OUT)/dataset.csv | $(BIN)/render
+	$(BIN)/render --kind=dataset --objects=$< --out=$@
 $(OUT)/figures/parts.png: $(OUT)/objects.mk $(call OBJECT_FILES,parts) | $(BIN)/render
 	$(BIN)/render --kind=parts --objects=$(OUT)/objects.csv --out=$@
 $(OUT)/figures/hand.png: $(HAND) $(OUT)/settings.txt | $(BIN)/render

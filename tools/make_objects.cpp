@@ -20,9 +20,10 @@ using namespace dexremoe;
 
 constexpr double kLength = 0.1;  // longest side of every source mesh, m
 
-std::vector<std::string> ManifestRow(const RecipeFile& recipe, const TriMesh& mesh) {
+std::vector<std::string> ManifestRow(const RecipeObject& recipe, const TriMesh& mesh) {
   const Eigen::Vector3d size = BoundsOf(mesh).Size();
   return {recipe.category,
+          recipe.object_class,
           recipe.category + "/" + recipe.name + ".ply",
           fmt::format("{}", mesh.triangles.size()),
           fmt::format("{}", mesh.vertices.size()),
@@ -49,13 +50,13 @@ int main(int argc, char** argv) {
   options.Add("seed", &seed, "seed of the recipes' random parameters");
   options.Add("workers", &workers, "threads, 0: all processors").Range(0, 1024).NotStored();
   return RunTool(options, argc, argv, [&] {
-    const std::vector<RecipeFile> files = FindRecipes(recipes);
+    const std::vector<RecipeObject> files = FindRecipes(recipes);
     std::vector<std::vector<std::string>> rows(files.size());
     Progress progress("make_objects", static_cast<double>(files.size()));
     std::atomic<int> done = 0;
     ThreadPool pool(workers);
     pool.ParallelFor(static_cast<int>(files.size()), [&](int i, int worker) {
-      const RecipeFile& file = files[i];
+      const RecipeObject& file = files[i];
       const TriMesh mesh = MeshOfRecipe(LoadRecipe(file, seed), kLength, file.path);
       SaveMesh(out + "/" + file.category + "/" + file.name + ".ply", mesh);
       rows[i] = ManifestRow(file, mesh);
@@ -63,8 +64,8 @@ int main(int argc, char** argv) {
       if (worker == 0) progress.Update(done, file.name);
     });
     progress.Finish();
-    CsvWriter manifest({"category", "file", "triangles", "vertices", "closed", "bbox_x", "bbox_y",
-                        "bbox_z", "volume_cm3"});
+    CsvWriter manifest({"category", "class", "file", "triangles", "vertices", "closed", "bbox_x",
+                        "bbox_y", "bbox_z", "volume_cm3"});
     for (const auto& row : rows) manifest.Row(row);
     WriteFile(out + "/manifest.csv", manifest.text());
     std::printf("objects: %zu\n", files.size());

@@ -35,9 +35,9 @@ struct RenderTool {
 };
 
 void RenderTool::Register(Options& options) {
-  options.Add("kind", &kind, "what to draw")
+  options.Add("kind", &kind, "what to draw; sources and dataset: meshes as they come")
       .Required()
-      .Choices({"episode", "strip", "video", "objects", "parts", "hand"});
+      .Choices({"episode", "strip", "video", "objects", "sources", "dataset", "parts", "hand"});
   options.Add("out", &out, "PNG file; MP4 for a video").Required().NotStored();
   options.Add("objects", &objects, "objects.csv (all kinds but hand)");
   options.Add("trace", &trace, "recorded episodes (episode, strip, video)");
@@ -50,11 +50,11 @@ void RenderTool::Register(Options& options) {
   options.Add("steps", &steps, "control steps of a strip, or the one of an episode picture");
   options.Add("rate", &rate, "frames per second of a video").Range(1, 240);
   options.Add("goal", &goal, "where the goal is drawn").Choices({"beside", "below", "over"});
-  options.Add("columns", &columns, "cells side by side in a sheet; 0 takes 6 (objects), 3 (parts)")
+  options
+      .Add("columns", &columns,
+           "cells side by side in a sheet; 0 takes 6 (objects, sources), 3 (parts)")
       .Range(0, 64);
-  options.Add("up", &up,
-              "axis of the objects that stands upright: x, y, z, -x, -y, -z, or auto (from the "
-              "meshes' manifest)");
+  options.Add("up", &up, "upright axis: x, y, z, -x, -y, -z, or auto (of the meshes' manifest)");
   options.Add("explode", &explode, "how far parts are moved apart, relative").Range(0, 5);
   options.Add("q", &q, "joint angles of the hand picture, rad");
   options.Add("colliders", &colliders, "overlay the hand's collision shapes");
@@ -107,28 +107,28 @@ void RenderTool::RunEpisode() const {
 }
 
 void RenderTool::RunHand() const {
-  const HandModel model = LoadHand(hand);
   Renderer renderer(render);
-  WritePng(out, HandPicture(renderer, model, q, colliders, Width(640), height));
+  WritePng(out, HandPicture(renderer, LoadHand(hand), q, colliders, Width(640), height));
 }
 
 void RenderTool::RunSheet() const {
   const std::vector<ObjectEntry> entries = Entries();
-  const bool with_parts = kind == "parts";
   Progress progress(kind, double(entries.size()));
   const ObjectSource source = [&](int i) {
     progress.Update(i, entries[i].name);
-    return ReadSheetObject(entries[i], up, with_parts);
+    if (kind == "sources" || kind == "dataset") return ReadSourceObject(entries[i], up);
+    return ReadSheetObject(entries[i], up, kind == "parts");
   };
   Renderer renderer(render);
   const Fonts fonts;
-  std::vector<std::string> categories;
-  for (const ObjectEntry& entry : entries) categories.push_back(entry.category);
-  const int count = int(entries.size());
-  WritePng(out, with_parts ? PartsSheet(renderer, fonts, count, source, explode,
-                                        columns > 0 ? columns : 3, Width(1500))
-                           : ObjectSheet(renderer, fonts, categories, source,
-                                         columns > 0 ? columns : 6, Width(1440)));
+  if (kind == "dataset")
+    WritePng(out, DatasetSheet(renderer, fonts, entries, source, Width(1800)));
+  else if (kind == "parts")
+    WritePng(out, PartsSheet(renderer, fonts, int(entries.size()), source, explode,
+                             columns > 0 ? columns : 3, Width(1500)));
+  else
+    WritePng(out,
+             ObjectSheet(renderer, fonts, entries, source, columns > 0 ? columns : 6, Width(1440)));
   progress.Finish();
 }
 
@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
   tool.Register(options);
   return RunTool(options, argc, argv, [&] {
     if (tool.kind == "hand") return tool.RunHand();
-    if (tool.kind == "objects" || tool.kind == "parts") return tool.RunSheet();
-    tool.RunEpisode();
+    const bool episode = tool.kind == "episode" || tool.kind == "strip" || tool.kind == "video";
+    episode ? tool.RunEpisode() : tool.RunSheet();
   });
 }

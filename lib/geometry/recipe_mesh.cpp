@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 #include "base/error.h"
 #include "geometry/distance_field.h"
@@ -37,7 +38,8 @@ void ExtendBounds(const Field& field, const Eigen::Vector3d& center, double half
   }
 }
 
-void FillField(const Field& field, DistanceGrid& grid) {
+DistanceGrid FilledGrid(const Field& field, const Box3& bounds, int resolution) {
+  DistanceGrid grid = GridAround(bounds, resolution, 2);
   constexpr int kBlock = 6;
   const double enough = kSlack * std::sqrt(3.0) * (kBlock / 2.0 + 1) * grid.spacing;
   for (int z = 0; z < grid.dims[2]; z += kBlock)
@@ -54,24 +56,40 @@ void FillField(const Field& field, DistanceGrid& grid) {
               grid.values[grid.Index(i, j, k)] =
                   std::abs(middle) > enough ? middle : field(grid.Position(i, j, k));
       }
+  return grid;
 }
 
-// Tells the author where the stray piece (or the bubble inside) is.
-void CheckOneShell(const TriMesh& mesh, const std::string& label) {
+// Triangles grow with the square of the resolution: one coarse mesh tells how many there will be.
+int ResolutionFor(const Recipe& recipe, const Box3& bounds, const std::string& label) {
+  constexpr int kCoarse = 40, kFinest = 160;
+  const std::size_t coarse =
+      ExtractLevelSet(FilledGrid(recipe.field, bounds, kCoarse), 0).triangles.size();
+  if (coarse == 0) Fail("{}: expected a closed shell, found nothing thicker than a voxel", label);
+  const double factor = std::sqrt(recipe.triangles / static_cast<double>(coarse));
+  return std::clamp(static_cast<int>(kCoarse * factor), 16, kFinest);
+}
+
+// The mesh without crumbs, pieces and bubbles that cuts leave in passing. What is larger tells the
+// author where the stray piece (or the bubble inside) is.
+TriMesh OneShellOf(const TriMesh& mesh, const std::string& label) {
+  constexpr double kCrumb = 1e-3;  // of the largest shell's volume
   const std::vector<int> shell = ShellOfTriangles(mesh);
   if (shell.empty()) Fail("{}: expected one closed shell, found none", label);
-  const int count = *std::max_element(shell.begin(), shell.end()) + 1;
-  if (count == 1) return;
-  std::vector<std::vector<int>> members(count);
+  std::vector<std::vector<int>> members(*std::max_element(shell.begin(), shell.end()) + 1);
   for (std::size_t t = 0; t < shell.size(); ++t) members[shell[t]].push_back(static_cast<int>(t));
-  const auto smallest =
-      std::min_element(members.begin(), members.end(),
-                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
-  const TriMesh stray = Submesh(mesh, *smallest);
-  const Eigen::Vector3d at = BoundsOf(stray).Center();
-  Fail("{}: expected one closed shell, found {}; the smallest is a {} at ({:.2f}, {:.2f}, {:.2f})",
-       label, count, MassPropertiesOf(stray).volume > 0 ? "piece" : "bubble", at.x(), at.y(),
-       at.z());
+  std::sort(members.begin(), members.end(),
+            [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  TriMesh largest = Submesh(mesh, members[0]);
+  const double crumb = kCrumb * MassPropertiesOf(largest).volume;
+  for (std::size_t i = 1; i < members.size(); ++i) {
+    const TriMesh stray = Submesh(mesh, members[i]);
+    const double volume = MassPropertiesOf(stray).volume;
+    const Eigen::Vector3d at = BoundsOf(stray).Center();
+    if (std::abs(volume) > crumb)
+      Fail("{}: expected one closed shell, found {}; one is a {} at ({:.2f}, {:.2f}, {:.2f})",
+           label, members.size(), volume > 0 ? "piece" : "bubble", at.x(), at.y(), at.z());
+  }
+  return largest;
 }
 
 }  // namespace
@@ -81,10 +99,10 @@ TriMesh MeshOfRecipe(const Recipe& recipe, double length, const std::string& lab
   ExtendBounds(recipe.field, Eigen::Vector3d::Zero(), kReach, kReach / 256, bounds);
   if (!(bounds.Size().maxCoeff() > 0))
     Fail("{}: expected a shape within {} units of the origin, found nothing", label, kReach);
-  DistanceGrid grid = GridAround(bounds, recipe.resolution, 2);
-  FillField(recipe.field, grid);
-  TriMesh mesh = ExtractLevelSet(grid, 0);
-  CheckOneShell(mesh, label);
+  const int resolution =
+      recipe.resolution > 0 ? recipe.resolution : ResolutionFor(recipe, bounds, label);
+  const DistanceGrid grid = FilledGrid(recipe.field, bounds, resolution);
+  TriMesh mesh = OneShellOf(ExtractLevelSet(grid, 0), label);
   for (int round = 0; round < 2; ++round) {
     SmoothTangentially(2, mesh);
     ProjectToField(recipe.field, grid.spacing / 4, grid.spacing / 2, mesh);
@@ -95,25 +113,36 @@ TriMesh MeshOfRecipe(const Recipe& recipe, double length, const std::string& lab
   return mesh;
 }
 
-std::vector<RecipeFile> FindRecipes(const std::string& folder) {
+std::vector<RecipeObject> FindRecipes(const std::string& folder) {
   namespace fs = std::filesystem;
   if (!fs::is_directory(folder)) Fail("{}: expected a folder of recipes, found none", folder);
-  std::vector<RecipeFile> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file() && entry.path().extension() == ".recipe")
-      files.push_back({entry.path().string(), entry.path().parent_path().filename().string(),
-                       entry.path().stem().string()});
-  if (files.empty()) Fail("{}: expected CATEGORY/NAME.recipe files, found none", folder);
-  std::sort(files.begin(), files.end(),
-            [](const RecipeFile& a, const RecipeFile& b) { return a.path < b.path; });
-  return files;
+  std::vector<RecipeObject> objects;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file() || entry.path().extension() != ".recipe") continue;
+    const std::string path = entry.path().string();
+    RecipeHead head = ReadRecipeHead(path, ReadFile(path));
+    if (head.variants.empty()) head.variants = {entry.path().stem().string()};
+    for (const std::string& name : head.variants)
+      objects.push_back(
+          {path, entry.path().parent_path().filename().string(), name, head.object_class});
+  }
+  if (objects.empty()) Fail("{}: expected CATEGORY/NAME.recipe files, found none", folder);
+  const auto key = [](const RecipeObject& o) { return std::tie(o.category, o.name, o.path); };
+  std::sort(objects.begin(), objects.end(),
+            [&](const RecipeObject& a, const RecipeObject& b) { return key(a) < key(b); });
+  for (std::size_t i = 1; i < objects.size(); ++i)
+    if (objects[i].category == objects[i - 1].category && objects[i].name == objects[i - 1].name)
+      Fail("{}: expected names that differ within a category, found '{}' in {} too",
+           objects[i].path, objects[i].name, objects[i - 1].path);
+  return objects;
 }
 
-Recipe LoadRecipe(const RecipeFile& file, std::uint64_t seed) {
+Recipe LoadRecipe(const RecipeObject& object, std::uint64_t seed) {
   std::uint64_t name = 0xCBF29CE484222325u;  // FNV-1a
-  for (const char c : file.category + "/" + file.name)
+  for (const char c : object.category + "/" + object.name)
     name = (name ^ static_cast<unsigned char>(c)) * 0x100000001B3u;
-  return ParseRecipe(file.path, ReadFile(file.path), SeedOf(seed, Stream::kRecipe, {name}));
+  return ParseRecipe(object.path, ReadFile(object.path), SeedOf(seed, Stream::kRecipe, {name}),
+                     object.name);
 }
 
 }  // namespace dexremoe

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace dexremoe {
 namespace {
@@ -138,13 +139,20 @@ std::string RecipeLine::Word(const char* what) {
   return text_.substr(start, at_ - start);
 }
 
+std::string RecipeLine::Rest() {
+  SkipSpace();
+  std::string rest = text_.substr(std::exchange(at_, text_.size()));
+  rest.resize(rest.find_last_not_of(" \t\r") + 1);
+  return rest;
+}
+
 RecipeArgs RecipeLine::Arguments() {
   RecipeArgs args(place_);
   while (!AtEnd()) {
     const std::string key = Word("an argument");
     Expect('=');
     RecipeArgs::Value value;
-    if (key == "mirror") {
+    if (key == "mirror" || key == "around") {
       value.word = Word("x, y or z");
     } else {
       value.tuples.push_back(TupleOrNumber());
@@ -231,6 +239,10 @@ double RecipeLine::Function(const std::string& name) {
     if (a.size() != count)
       place_.Fail("{}(): expected {} number(s), found {}", name, count, a.size());
   };
+  if (name == "each") {
+    takes(scope_.variants);
+    return a[scope_.variant];
+  }
   if (name == "pick") return a[scope_.rng.Index(a.size())];
   if (name == "min") return *std::min_element(a.begin(), a.end());
   if (name == "max") return *std::max_element(a.begin(), a.end());
@@ -244,8 +256,8 @@ double RecipeLine::Function(const std::string& name) {
   if (name == "cos") return std::cos(radians);
   if (name == "abs") return std::abs(a[0]);
   if (name == "sqrt" && a[0] >= 0) return std::sqrt(a[0]);
-  place_.Fail("expected one of uniform, pick, min, max, sin, cos, abs, sqrt; found '{}({})'", name,
-              a[0]);
+  place_.Fail("expected one of uniform, pick, each, min, max, sin, cos, abs, sqrt; found '{}({})'",
+              name, a[0]);
 }
 
 }  // namespace dexremoe

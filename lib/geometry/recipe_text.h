@@ -12,10 +12,11 @@
 
 namespace dexremoe {
 
-// Names set by `let` and the random numbers that expressions may draw, in file order.
+// What expressions may use: names set by `let`, random numbers in file order, the variant.
 struct RecipeScope {
   std::map<std::string, double> names;
   Rng rng{0};
+  std::size_t variant = 0, variants = 1;
 };
 
 // Where in which file, for messages.
@@ -78,6 +79,7 @@ class RecipeLine {
 
   bool AtEnd();
   std::string Word(const char* what);
+  std::string Rest();  // of the line, without blanks around it
   void Expect(char c);
   double Expression();
   RecipeArgs Arguments();

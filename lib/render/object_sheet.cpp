@@ -38,6 +38,9 @@ Image StandingPicture(Renderer& renderer, std::vector<Item> items,
   return renderer.Draw(scene, camera, width, height);
 }
 
+// Soft enough for shading to show.
+Eigen::Vector3f ColorOf(int index) { return 0.8f * palette::Distinct(index).array() + 0.16f; }
+
 Image MeshPicture(Renderer& renderer, const SheetObject& object, const Eigen::Vector3f& color,
                   int width, int height) {
   renderer.ClearMeshes();
@@ -73,12 +76,12 @@ struct Block {
 };
 
 // Blocks from left to right, a new row of blocks when the next does not fit.
-std::vector<Block> LayOut(const std::vector<std::string>& categories, int columns) {
+std::vector<Block> LayOut(const std::vector<ObjectEntry>& entries, int columns) {
   std::vector<Block> blocks;
   int used = 0, row = 0;
-  for (int i = 0; i < int(categories.size());) {
-    Block block{categories[i], i, 0, 0, 0, 0};
-    while (i < int(categories.size()) && categories[i] == block.category) ++i;
+  for (int i = 0; i < int(entries.size());) {
+    Block block{entries[i].category, i, 0, 0, 0, 0};
+    while (i < int(entries.size()) && entries[i].category == block.category) ++i;
     block.count = i - block.first;
     block.columns = std::min(block.count, columns);
     if (used + block.columns > columns) {
@@ -95,10 +98,9 @@ std::vector<Block> LayOut(const std::vector<std::string>& categories, int column
 
 }  // namespace
 
-Image ObjectSheet(Renderer& renderer, const Fonts& fonts,
-                  const std::vector<std::string>& categories, const ObjectSource& source,
-                  int columns, int width) {
-  const std::vector<Block> blocks = LayOut(categories, columns);
+Image ObjectSheet(Renderer& renderer, const Fonts& fonts, const std::vector<ObjectEntry>& entries,
+                  const ObjectSource& source, int columns, int width) {
+  const std::vector<Block> blocks = LayOut(entries, columns);
   const int cell = width / columns, picture = cell * 4 / 5;
   const double size = std::clamp(cell * 0.075, 8.0, 18.0);
   const int heading = int(2.6 * size), caption = int(1.9 * size);
@@ -113,7 +115,7 @@ Image ObjectSheet(Renderer& renderer, const Fonts& fonts,
   int index = 0;
   for (const Block& block : blocks) {
     const int left = block.column * cell, top = row_top[block.row];
-    const Eigen::Vector3f color = 0.8f * palette::Distinct(index++).array() + 0.16f;
+    const Eigen::Vector3f color = ColorOf(index++);
     canvas.Box(left + 0.04 * cell, top + heading - 0.45 * size, (block.columns - 0.08) * cell,
                std::max(1.5, 0.14 * size), color, 0.07 * size);
     canvas.Text(left + 0.05 * cell, top + heading - 0.95 * size,
@@ -130,6 +132,11 @@ Image ObjectSheet(Renderer& renderer, const Fonts& fonts,
     }
   }
   return sheet;
+}
+
+Image ObjectPicture(Renderer& renderer, const SheetObject& object, int index, int width,
+                    int height) {
+  return MeshPicture(renderer, object, ColorOf(index), width, height);
 }
 
 Image PartsSheet(Renderer& renderer, const Fonts& fonts, int count, const ObjectSource& source,

@@ -14,11 +14,19 @@ namespace dexremoe {
 // Draws the i-th object of a sheet; called once each, in order, so that only one is in memory.
 using ObjectSource = std::function<SheetObject(int)>;
 
-// Objects on a floor, in blocks by category (categories[i] is object i's; equal ones adjacent).
+// Objects on a floor, in blocks by category (entries of a category adjacent).
 // `columns` cells side by side. Height follows.
-Image ObjectSheet(Renderer& renderer, const Fonts& fonts,
-                  const std::vector<std::string>& categories, const ObjectSource& source,
-                  int columns, int width);
+Image ObjectSheet(Renderer& renderer, const Fonts& fonts, const std::vector<ObjectEntry>& entries,
+                  const ObjectSource& source, int columns, int width);
+
+// One object on a floor, in the colour of its category, `index` counted within kCategories.
+Image ObjectPicture(Renderer& renderer, const SheetObject& object, int index, int width,
+                    int height);
+
+// The whole data set: a band for every category, its training objects left of a line, those out of
+// distribution right of it. `entries` by category; source(i) draws entries[i]; height follows.
+Image DatasetSheet(Renderer& renderer, const Fonts& fonts, const std::vector<ObjectEntry>& entries,
+                   const ObjectSource& source, int width);
 
 // Each object twice: as a mesh and as its convex parts, moved apart by `explode` times their
 // distance from the middle. `columns` pairs side by side.

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "geometry/mesh_io.h"
 #include "geometry/object_files.h"
 #include "io/csv.h"
 
@@ -21,13 +22,24 @@ std::string AxisInManifest(const std::filesystem::path& mesh) {
   return "z";
 }
 
-}  // namespace
-
-SheetObject ReadSheetObject(const ObjectEntry& entry, const std::string& up, bool with_parts) {
+SheetObject Described(const ObjectEntry& entry, const std::string& up) {
   SheetObject object;
   object.name = entry.name;
   object.category = entry.category;
   object.up = UpAxis(up, entry.mesh);
+  return object;
+}
+
+}  // namespace
+
+SheetObject ReadSourceObject(const ObjectEntry& entry, const std::string& up) {
+  SheetObject object = Described(entry, up);
+  object.mesh = LoadMesh(entry.mesh);
+  return object;
+}
+
+SheetObject ReadSheetObject(const ObjectEntry& entry, const std::string& up, bool with_parts) {
+  SheetObject object = Described(entry, up);
   object.mesh = ReadObjectMesh(entry.folder + "/mesh.h5").mesh;
   if (!with_parts) return object;
   ObjectParts parts = ReadParts(entry.folder + "/parts.h5");

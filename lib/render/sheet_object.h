@@ -21,6 +21,9 @@ struct SheetObject {
 // mesh.h5 and, with `with_parts`, parts.h5 of the entry's folder. `up` as for UpAxis. Throws Error.
 SheetObject ReadSheetObject(const ObjectEntry& entry, const std::string& up, bool with_parts);
 
+// The entry's source mesh as it is, for pictures before anything is made of it. Throws Error.
+SheetObject ReadSourceObject(const ObjectEntry& entry, const std::string& up);
+
 // Which way is up for an object: source meshes disagree (y in most, z in ours). "x", "y", "z",
 // "-x",
 // "-y" or "-z"; throws Error for another word. "auto" looks for the mesh in the column up_axis of

@@ -28,6 +28,8 @@ std::string Lower(std::string text) {
 std::vector<MeshFile> FromManifest(const fs::path& folder, const fs::path& manifest) {
   const CsvTable table = CsvTable::Read(manifest.string());
   const auto categories = table.Text("category"), files = table.Text("file");
+  const auto classes =
+      table.HasColumn("class") ? table.Text("class") : std::vector<std::string>(files.size());
   std::vector<MeshFile> meshes;
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (std::find(kCategories.begin(), kCategories.end(), categories[i]) == kCategories.end())
@@ -37,7 +39,7 @@ std::vector<MeshFile> FromManifest(const fs::path& folder, const fs::path& manif
     if (!fs::is_regular_file(path))
       Fail("{}: file: expected '{}' to exist, found no such file", manifest.string(),
            path.string());
-    meshes.push_back({categories[i], path.string()});
+    meshes.push_back({categories[i], path.string(), classes[i]});
   }
   return meshes;
 }
@@ -82,6 +84,7 @@ std::vector<ObjectEntry> Draw(const std::vector<MeshFile>& meshes, int per_categ
       entry.name = NameOf(mesh.path);
       entry.category = mesh.category;
       entry.mesh = mesh.path;
+      entry.object_class = mesh.object_class;
     }
   }
   return entries;

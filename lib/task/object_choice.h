@@ -12,11 +12,13 @@ namespace dexremoe {
 struct MeshFile {
   std::string category;
   std::string path;
+  std::string object_class = {};  // empty when not said
 };
 
-// The meshes of a folder: those of manifest.csv (columns category and file, relative to the folder)
-// when there is one, else FOLDER/CATEGORY/*.{ply,obj,stl,off,dae,fbx,glb,gltf}. By category, then
-// by path. Throws Error when there are none, or naming the file and line that is wrong.
+// The meshes of a folder: those of manifest.csv (columns category, file, relative to the folder,
+// and class, optional) when there is one, else
+// FOLDER/CATEGORY/*.{ply,obj,stl,off,dae,fbx,glb,gltf}. By category, then by path. Throws Error
+// when there are none, or naming the file and line that is wrong.
 std::vector<MeshFile> ListMeshes(const std::string& folder);
 
 struct ChoiceOptions {

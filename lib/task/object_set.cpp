@@ -57,6 +57,8 @@ std::vector<ObjectEntry> ReadObjectList(const std::string& path) {
   const auto name = table.Text("name"), category = table.Text("category"),
              split = table.Text("split"), mesh = table.Text("mesh"), folder = table.Text("folder"),
              grasps = table.Text("grasps");
+  const auto object_class =
+      table.HasColumn("class") ? table.Text("class") : std::vector<std::string>(table.num_rows());
   std::vector<ObjectEntry> entries;
   std::set<std::string> names;
   for (std::size_t i = 0; i < table.num_rows(); ++i) {
@@ -67,16 +69,17 @@ std::vector<ObjectEntry> ReadObjectList(const std::string& path) {
     if (std::find(kCategories.begin(), kCategories.end(), category[i]) == kCategories.end())
       Fail("{}: category of {}: expected one of {}, found '{}'", path, name[i],
            fmt::join(kCategories, ", "), category[i]);
-    entries.push_back({name[i], category[i], split[i], mesh[i], folder[i], grasps[i]});
+    entries.push_back(
+        {name[i], category[i], split[i], mesh[i], folder[i], grasps[i], object_class[i]});
   }
   if (entries.empty()) Fail("{}: expected objects, found none", path);
   return entries;
 }
 
 void WriteObjectList(const std::string& path, const std::vector<ObjectEntry>& entries) {
-  CsvWriter csv({"name", "category", "split", "mesh", "folder", "grasps"});
+  CsvWriter csv({"name", "category", "class", "split", "mesh", "folder", "grasps"});
   for (const ObjectEntry& e : entries)
-    csv.Row({e.name, e.category, e.split, e.mesh, e.folder, e.grasps});
+    csv.Row({e.name, e.category, e.object_class, e.split, e.mesh, e.folder, e.grasps});
   WriteFile(path, csv.text());
 }
 

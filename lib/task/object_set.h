@@ -21,15 +21,16 @@ inline constexpr int kShapeFeatureSize = 100;  // p, the PointNet++ descriptor (
 // Index of a category; throws Error listing the six names.
 int CategoryIndex(const std::string& name);
 
-// One line of objects.csv: name,category,split,mesh,folder,grasps. Paths are relative to the
-// working directory.
+// One line of objects.csv: name,category,class,split,mesh,folder,grasps; class may be missing.
+// Paths are relative to the working directory.
 struct ObjectEntry {
   std::string name;
   std::string category;
-  std::string split;   // "train" or "ood" (out of distribution)
-  std::string mesh;    // source mesh
-  std::string folder;  // holds mesh.h5, parts.h5, cloud.h5, shape.h5
-  std::string grasps;  // grasps.h5
+  std::string split;              // "train" or "ood" (out of distribution)
+  std::string mesh;               // source mesh
+  std::string folder;             // holds mesh.h5, parts.h5, cloud.h5, shape.h5
+  std::string grasps;             // grasps.h5
+  std::string object_class = {};  // finer than the category; may be empty
 };
 std::vector<ObjectEntry> ReadObjectList(const std::string& path);
 void WriteObjectList(const std::string& path, const std::vector<ObjectEntry>& entries);

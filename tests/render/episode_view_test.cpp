@@ -188,14 +188,38 @@ SheetObject NamedBall(int i) {
   return object;
 }
 
+TEST_F(EpisodeViewTest, TheDataSetSheetPutsTrainingObjectsLeftOfTheLineAndTheOthersRight) {
+  const auto ink_of = [&](const std::vector<const char*>& splits) {
+    std::vector<ObjectEntry> entries;
+    for (const char* split : splits) entries.push_back({"ball", "head", split, "", "", ""});
+    const Image sheet = DatasetSheet(renderer_, fonts_, entries, NamedBall, 450);
+    std::pair<int, int> ink;  // coloured pixels in the left and the right half
+    for (int y = 0; y < sheet.height; ++y)
+      for (int x = 0; x < sheet.width; ++x) {
+        const std::uint8_t* p = sheet.at(x, y);
+        if (std::max({p[0], p[1], p[2]}) - std::min({p[0], p[1], p[2]}) > 60)
+          ++(x < sheet.width / 2 ? ink.first : ink.second);
+      }
+    return ink;
+  };
+  const auto [train_left, train_right] = ink_of({"train"});
+  EXPECT_GT(train_left, 100);
+  EXPECT_EQ(train_right, 0);
+  const auto [ood_left, ood_right] = ink_of({"ood"});
+  EXPECT_EQ(ood_left, 0);
+  EXPECT_GT(ood_right, 100);
+}
+
 TEST_F(EpisodeViewTest, ASheetGivesEveryObjectACellUnderItsCategory) {
-  const std::vector<std::string> categories = {"animal", "animal", "head", "head", "head", "shoe"};
+  std::vector<ObjectEntry> entries;
+  for (const char* category : {"animal", "animal", "head", "head", "head", "shoe"})
+    entries.push_back({"ball", category, "train", "", "", ""});
   std::vector<int> drawn;
   const ObjectSource source = [&](int i) {
     drawn.push_back(i);
     return NamedBall(i);
   };
-  const Image sheet = ObjectSheet(renderer_, fonts_, categories, source, 3, 300);
+  const Image sheet = ObjectSheet(renderer_, fonts_, entries, source, 3, 300);
   EXPECT_EQ(drawn, (std::vector<int>{0, 1, 2, 3, 4, 5}));
   EXPECT_EQ(sheet.width, 300);
   // Three rows of blocks (2, 3 and 1 cells of 3): a ball in the middle of each, paper beside them.

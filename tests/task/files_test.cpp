@@ -34,7 +34,7 @@ std::string Complaint(Body&& body) {
 
 TEST(ObjectList, ReadsBackWhatWasWritten) {
   const std::vector<ObjectEntry> entries = {
-      {"duck", "animal", "train", "m/duck.ply", "d/duck", "d/duck/grasps.h5"},
+      {"duck", "animal", "train", "m/duck.ply", "d/duck", "d/duck/grasps.h5", "bird"},
       {"a_car", "vehicle", "ood", "m/a, car.ply", "d/a_car", "g.h5"}};
   WriteObjectList(TestPath("list.csv"), entries);
   const auto read = ReadObjectList(TestPath("list.csv"));
@@ -42,6 +42,17 @@ TEST(ObjectList, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read[1].mesh, "m/a, car.ply");
   EXPECT_EQ(read[1].split, "ood");
   EXPECT_EQ(read[0].grasps, "d/duck/grasps.h5");
+  EXPECT_EQ(read[0].object_class, "bird");
+  EXPECT_EQ(read[1].object_class, "");
+}
+
+TEST(ObjectList, TheClassMayBeMissing) {
+  WriteFile(TestPath("old.csv"),
+            "name,category,split,mesh,folder,grasps\na,head,ood,a.ply,d/a,g.h5\n");
+  const auto read = ReadObjectList(TestPath("old.csv"));
+  ASSERT_EQ(read.size(), 1u);
+  EXPECT_EQ(read[0].object_class, "");
+  EXPECT_EQ(read[0].mesh, "a.ply");
 }
 
 TEST(ObjectList, BadLinesAreNamed) {
@@ -145,6 +156,11 @@ TEST(ListMeshes, TakesTheManifestElseTheCategoryFolders) {
   meshes = ListMeshes(folder.string());
   ASSERT_EQ(meshes.size(), 1u);
   EXPECT_EQ(meshes[0].category, "shoe");
+  EXPECT_EQ(meshes[0].object_class, "");
+  WriteFile((folder / "manifest.csv").string(), "category,class,file\nshoe,boot,other/c.ply\n");
+  const auto entries = ChooseObjects(ListMeshes(folder.string()), {}, 1);
+  ASSERT_EQ(entries.size(), 1u);
+  EXPECT_EQ(entries[0].object_class, "boot");
   WriteFile((folder / "manifest.csv").string(), "category,file\nshoe,gone.ply\n");
   EXPECT_THAT(Complaint([&] { ListMeshes(folder.string()); }), HasSubstr("gone.ply"));
   EXPECT_THAT(Complaint([&] { ListMeshes((folder / "none").string()); }), HasSubstr("folder"));
