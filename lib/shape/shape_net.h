@@ -38,7 +38,9 @@ std::vector<float> CategoryProbabilities(const ShapeDescriptor& descriptor);
 // ties of farthest-point distances). Throws Error for a cloud that PointNet++ cannot group.
 ShapeDescriptor DescribeShape(const ShapeNet& net, std::span<const Eigen::Vector3f> points);
 
-// Descriptors of the cloud in many orientations, in parallel.
+// Descriptors of the cloud in many orientations, in parallel. T is float, or BFloat16 to see what
+// the lower precision costs.
+template <typename T = float>
 std::vector<ShapeDescriptor> DescribeRotated(const ShapeNet& net,
                                              std::span<const Eigen::Vector3f> points,
                                              std::span<const Eigen::Quaternionf> rotations,

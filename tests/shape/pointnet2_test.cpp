@@ -122,7 +122,7 @@ TEST(PointNet, LeavingOutThePaddingChangesNeitherOutputNorGradient) {
     PointNetWorkspace<double> work;
     const GroupedCloud& used = pad ? padded : cloud;
     net.net.Forward<double>(params.data(), {&used, 1}, work);
-    logits[pad].assign(work.logits, work.logits + 3);
+    logits[pad] = work.logits;
     grads[pad].assign(params.size(), 0.0);
     std::vector<double> dlogits = {1, 2, -3};
     net.net.Backward<double>(params.data(), {&used, 1}, dlogits.data(), work, grads[pad].data());
