@@ -123,6 +123,9 @@ void WriteShape(const std::string& path, const ShapeDescriptor& descriptor,
              {"1", "component", "p, the PointNet++ descriptor of the shape"});
   file.Write("logits", descriptor.logits, {static_cast<std::int64_t>(kShapeCategories.size())},
              {"1", "category", "scores of airplane, animal, head, shoe, train, vehicle"});
+  file.Write("probabilities", CategoryProbabilities(descriptor),
+             {static_cast<std::int64_t>(kShapeCategories.size())},
+             {"1", "category", "softmax of the logits: the category without a label"});
   file.Commit();
 }
 

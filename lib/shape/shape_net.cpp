@@ -1,5 +1,10 @@
 #include "shape/shape_net.h"
 
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <numeric>
+
 #include "nn/kernels.h"
 #include "nn/layers.h"
 
@@ -30,6 +35,22 @@ std::vector<float> CategoryProbabilities(const ShapeDescriptor& descriptor) {
   SoftmaxForward<float>(1, static_cast<std::int64_t>(probabilities.size()),
                         descriptor.logits.data(), probabilities.data());
   return probabilities;
+}
+
+std::string LikelyCategories(const ShapeDescriptor& descriptor) {
+  const std::vector<float> probability = CategoryProbabilities(descriptor);
+  std::vector<std::size_t> order(probability.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return probability[a] > probability[b]; });
+  std::string text;
+  float sum = 0;
+  for (std::size_t i = 0; i < order.size() && sum < 0.95f; ++i) {
+    text += fmt::format("{}{} {:.3f}", i > 0 ? ", " : "", kShapeCategories[order[i]],
+                        probability[order[i]]);
+    sum += probability[order[i]];
+  }
+  return text;
 }
 
 ShapeDescriptor DescribeShape(const ShapeNet& net, std::span<const Eigen::Vector3f> points) {

@@ -31,8 +31,10 @@ struct ShapeDescriptor {
   std::vector<float> logits;   // [6], order of kShapeCategories
 };
 
-// Softmax of the logits.
+// Softmax of the logits: how likely each category is, as far as the shape tells.
 std::vector<float> CategoryProbabilities(const ShapeDescriptor& descriptor);
+// The most likely categories, falling, until they add up to 95 %: "train 0.870, vehicle 0.112".
+std::string LikelyCategories(const ShapeDescriptor& descriptor);
 
 // The descriptor of a cloud in any unit of length; the order of the points does not matter (beyond
 // ties of farthest-point distances). Throws Error for a cloud that PointNet++ cannot group.
