@@ -96,6 +96,9 @@ READY := $(OUT)/objects.mk $(call OBJECT_FILES,parts) $(call OBJECT_FILES,shape)
 
 ready: $(READY)
 
+.PHONY: clouds
+clouds: $(OUT)/objects.mk $(call OBJECT_FILES,cloud)
+
 # --- Training -----------------------------------------------------------------------------------
 # A training writes its checkpoints to NAME.running.h5 and takes up from there after a kill. NAME.h5
 # is the last state; NAME.best.h5 the best one: highest successes per episode at the hardest task
