@@ -27,6 +27,12 @@ train: deps  ## train base, experts and gate (SCALE=quick, desk or paper); calle
 	+@$(MAKE) -j1 --no-print-directory EXPERIMENT=1 trained
 	@printf 'Trained: %s\nWatch with: tensorboard --logdir %s\n' $(OUT)/gate.h5 $(OUT)/tensorboard
 
+.PHONY: gallery
+gallery: deps  ## draw contact sheets of all objects, their parts and clouds: results/RUN/gallery/
+	+@$(MAKE) $(JOBS) --no-print-directory build
+	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 $(OUT)/gallery/index.txt
+	@sed 's|^|  $(OUT)/gallery/|' $(OUT)/gallery/index.txt
+
 # The learning checks: a base policy by the desk recipe against the open-loop hold and the untrained
 # network, on every engine. SEED=2 makes a second run beside the first.
 seeded = results/$(1)$(if $(filter 1,$(SEED)),,-seed$(SEED))
@@ -202,6 +208,8 @@ $(OUT)/figures/objects.png: $(OUT)/objects.mk $(call OBJECT_FILES,mesh) | $(BIN)
 	$(BIN)/render --kind=objects --objects=$(OUT)/objects.csv --out=$@
 $(OUT)/figures/parts.png: $(OUT)/objects.mk $(call OBJECT_FILES,parts) | $(BIN)/render
 	$(BIN)/render --kind=parts --objects=$(OUT)/objects.csv --out=$@
+$(OUT)/gallery/index.txt: $(OUT)/objects.mk $(call OBJECT_FILES,parts) $(call OBJECT_FILES,cloud) | $(BIN)/render
+	$(BIN)/render --kind=gallery --objects=$(OUT)/objects.csv --out=$(@D)
 $(OUT)/figures/hand.png: $(HAND) $(OUT)/settings.txt | $(BIN)/render
 	$(BIN)/render --kind=hand --hand=$(HAND) --out=$@
 $(OUT)/figures/strip.png: $(OUT)/eval/gate.h5 | $(BIN)/render

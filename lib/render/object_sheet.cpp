@@ -51,7 +51,10 @@ Image MeshPicture(Renderer& renderer, const SheetObject& object, const Eigen::Ve
 Image PartsPicture(Renderer& renderer, const SheetObject& object, double explode, int width,
                    int height) {
   renderer.ClearMeshes();
-  Eigen::Vector3d middle = BoundsOf(object.mesh).Center();
+  Box3 box;
+  for (const TriMesh& part : object.parts)
+    for (const Eigen::Vector3d& vertex : part.vertices) box.Extend(vertex);
+  const Eigen::Vector3d middle = box.Center();
   std::vector<Item> items;
   for (std::size_t p = 0; p < object.parts.size(); ++p) {
     Item item;
@@ -130,6 +133,12 @@ Image ObjectSheet(Renderer& renderer, const Fonts& fonts,
     }
   }
   return sheet;
+}
+
+Image ObjectPicture(Renderer& renderer, const SheetObject& object, double explode, int width,
+                    int height) {
+  return object.parts.empty() ? MeshPicture(renderer, object, palette::kObject.color, width, height)
+                              : PartsPicture(renderer, object, explode, width, height);
 }
 
 Image PartsSheet(Renderer& renderer, const Fonts& fonts, int count, const ObjectSource& source,

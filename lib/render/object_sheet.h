@@ -25,4 +25,8 @@ Image ObjectSheet(Renderer& renderer, const Fonts& fonts,
 Image PartsSheet(Renderer& renderer, const Fonts& fonts, int count, const ObjectSource& source,
                  double explode, int columns, int width);
 
+// One object alone: its mesh, or its parts moved apart where it has any.
+Image ObjectPicture(Renderer& renderer, const SheetObject& object, double explode, int width,
+                    int height);
+
 }  // namespace dexremoe
