@@ -254,9 +254,11 @@ ShapeTrial TryShapes(const ShapeNet& net, const std::vector<LabelledCloud>& clou
 
 ShapeTraining TrainShape(const LabelledClouds& clouds, const ShapeTrainOptions& options,
                          std::uint64_t seed, ThreadPool& pool, ShapeNet& net) {
-  if (ResolvePrecision(options.precision) == "bf16")
-    return Train<BFloat16>(clouds, options, seed, pool, net);
-  return Train<float>(clouds, options, seed, pool, net);
+  const std::string precision = ResolvePrecision(options.precision);
+  ShapeTraining training = precision == "bf16" ? Train<BFloat16>(clouds, options, seed, pool, net)
+                                               : Train<float>(clouds, options, seed, pool, net);
+  training.precision = precision;
+  return training;
 }
 
 }  // namespace dexremoe

@@ -62,7 +62,8 @@ ShapeTrial TryShapes(const ShapeNet& net, const std::vector<LabelledCloud>& clou
 
 struct ShapeTraining {
   ShapeCurve curve;
-  ShapeTrial held_out;  // of the trained network
+  ShapeTrial held_out;            // of the trained network
+  std::string precision = "f32";  // that it was trained in: "f32" or "bf16"
 };
 
 // Initialises net.params and trains them with Adam on the cross-entropy of the category. The result

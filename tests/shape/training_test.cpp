@@ -204,7 +204,7 @@ TEST(ShapeFiles, NetworkAndDescriptorSurviveARoundTrip) {
   const std::string path = TemporaryPath("shape_net.h5"), shape = TemporaryPath("shape.h5");
   const ShapeCurve curve = {{1, 2}, {0.1, 0.1}, {1.5, 1.2}, {0.2, 0.4}, {NAN, 0.5}};
   const ShapeTrial trial = {{"cube"}, {0.75}, std::vector<std::int32_t>(36, 1)};
-  WriteShapeNet(path, net, {curve, trial}, {"test", "", 1, {}});
+  WriteShapeNet(path, net, {curve, trial, "bf16"}, {"test", "", 1, {}});
   const ShapeNet read = ReadShapeNet(path);
   EXPECT_EQ(read.params, net.params);
   const auto points = RandomCloud(80, 5);
@@ -217,6 +217,7 @@ TEST(ShapeFiles, NetworkAndDescriptorSurviveARoundTrip) {
             CategoryProbabilities(descriptor));
   const H5Reader file(path, kShapeNetFormat);
   EXPECT_EQ(file.ReadScalar<double>("held_out/accuracy"), 0.75);
+  EXPECT_EQ(file.ReadString("precision"), "bf16");
   EXPECT_EQ(file.ReadValues<double>("curve/loss", {2}), curve.loss);
   EXPECT_THAT(CurveCsv(curve), HasSubstr("\n2,0.1,1.2,0.4,0.5\n"));
 }
@@ -231,7 +232,7 @@ TEST(ShapeFiles, RefuseOtherFormatsAndWeightsThatAreNotFinite) {
   ShapeNet net(TinySizes());
   const ShapeTrial nothing = {{}, {}, std::vector<std::int32_t>(36, 0)};
   net.params[3] = NAN;
-  WriteShapeNet(path, net, {{}, nothing}, {"test", "", 1, {}});
+  WriteShapeNet(path, net, {{}, nothing, "f32"}, {"test", "", 1, {}});
   EXPECT_THAT([&] { ReadShapeNet(path); },
               ThrowsMessage<Error>(
                   AllOf(HasSubstr(path), HasSubstr("weights/sa1/0/weight"), HasSubstr("finite"))));
