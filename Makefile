@@ -8,6 +8,7 @@ SHELL := /bin/bash
 
 # What a user may set. The text behind ## is shown by `make help`.
 OBJECTS ?= builtin#                ## builtin, or a folder CATEGORY/MESH with or without manifest.csv
+REAL ?= meshes/debian#             ## real meshes that shape-table tries: a folder as for OBJECTS
 ENGINE ?= lanes#                   ## physics engine of grasps and training: lanes, ode or mujoco
 CHECK ?= ode#                      ## physics engine of evaluation
 HAND ?= data/hand/gx11.urdf#       ## hand description
@@ -34,6 +35,7 @@ commas = $(subst $(space),$(comma),$(strip $(1)))
 include mk/deps.mk
 include mk/build.mk
 include mk/test.mk
+include mk/debian.mk
 include mk/bench.mk
 include mk/experiment.mk
 include mk/ablate.mk

@@ -34,3 +34,17 @@ bench: deps  ## measure speed and accuracy of the physics, speed of learning; wr
 	  --benchmark_counters_tabular=true | tee results/bench/bench.txt.tmp
 	@mv results/bench/bench.txt.tmp results/bench/bench.txt
 	@echo 'Written: results/bench/sim.md, validate_sim.md, learn.md, bench.txt, bench.json'
+
+# PointNet++ at the paper's sizes, trained on the built-in training objects and tried on the others and
+# on real meshes.
+shape_objects = +@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 OBJECTS=$(2) OUT=results/shape-$(1) \
+  CONFIG=data/config/paper.toml clouds
+
+.PHONY: shape-table
+shape-table: deps $(if $(filter $(DEBIAN_MESHES),$(REAL)),$(DEBIAN_MESHES)/manifest.csv)  ## categories told from clouds: built-in objects and REAL=DIR, f32 and bf16; writes results/bench/shape.md
+	+@$(MAKE) $(JOBS) --no-print-directory build
+	$(call shape_objects,builtin,builtin)
+	$(call shape_objects,real,$(REAL))
+	@mkdir -p results/bench
+	$(BUILD)/bin/bench_shape --objects=results/shape-builtin/objects.csv --real=results/shape-real/objects.csv \
+	  --workers=$(WORKERS) --out=results/bench/shape.md --csv=results/bench/shape.csv

@@ -4,7 +4,7 @@ DEBIAN_PACKAGES := g++ make pkg-config ca-certificates \
   libode-dev libeigen3-dev libassimp-dev libpcl-dev libccd-dev libhdf5-dev libosmesa6-dev \
   libdnnl-dev libcli11-dev libspdlog-dev libfmt-dev libtomlplusplus-dev liburdfdom-dev \
   liburdfdom-headers-dev libqhull-dev libpng-dev libfreetype-dev libxxhash-dev libgtest-dev libgmock-dev \
-  libbenchmark-dev libhwy-dev libopenmpi-dev openmpi-bin gnuplot-nox fonts-dejavu-core ffmpeg
+  libbenchmark-dev libhwy-dev libopenmpi-dev openmpi-bin gnuplot-nox fonts-dejavu-core ffmpeg libarchive-tools
 
 # Taken where they can be had: a few percent of speed, and the referee of the physics engines.
 OPTIONAL_PACKAGES := clang libmujoco-dev

@@ -27,6 +27,12 @@ train: deps  ## train base, experts and gate (SCALE=quick, desk or paper); calle
 	+@$(MAKE) -j1 --no-print-directory EXPERIMENT=1 trained
 	@printf 'Trained: %s\nWatch with: tensorboard --logdir %s\n' $(OUT)/gate.h5 $(OUT)/tensorboard
 
+.PHONY: gallery
+gallery: deps  ## draw contact sheets of all objects, their parts and clouds: results/RUN/gallery/
+	+@$(MAKE) $(JOBS) --no-print-directory build
+	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 $(OUT)/gallery/index.txt
+	@sed 's|^|  $(OUT)/gallery/|' $(OUT)/gallery/index.txt
+
 # The learning checks: a base policy by the desk recipe against the open-loop hold and the untrained
 # network, on every engine. SEED=2 makes a second run beside the first.
 seeded = results/$(1)$(if $(filter 1,$(SEED)),,-seed$(SEED))
@@ -50,7 +56,7 @@ dataset: deps  ## draw all objects: training left of a line, out of distribution
 	@mkdir -p paper_figs
 	cp $(OUT)/figures/dataset.png paper_figs/
 
-TABLES  := $(OUT)/tables/table1.md
+TABLES  := $(OUT)/tables/table1.md $(OUT)/tables/categories.md
 FIGURES := $(addprefix $(OUT)/figures/,curves.png objects.png parts.png per_object.png tsne.png \
   hand.png strip.png episode.mp4)
 PRODUCTS := $(TABLES) $(FIGURES)
@@ -104,6 +110,9 @@ READY := $(OUT)/objects.mk $(call OBJECT_FILES,parts) $(call OBJECT_FILES,shape)
 
 ready: $(READY)
 
+.PHONY: clouds
+clouds: $(OUT)/objects.mk $(call OBJECT_FILES,cloud)
+
 # --- Training -----------------------------------------------------------------------------------
 # A training writes its checkpoints to NAME.running.h5 and takes up from there after a kill. NAME.h5
 # is the last state; NAME.best.h5 the best one: highest successes per episode at the hardest task
@@ -151,6 +160,18 @@ $(EVAL_FILES): $(OUT)/eval/%.h5: $(OUT)/%.h5 | $(BIN)/evaluate
 $(OUT)/tables/table1.md: $(EVAL_FILES) data/paper_tables.csv | $(BIN)/tabulate
 	$(BIN)/tabulate --eval=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" \
 	  --paper=data/paper_tables.csv --out=$(basename $@)
+
+# Without a label: the gate's policy told what PointNet++ takes each object for, or how likely it
+# finds every category.
+UNLABELLED := predicted soft
+UNLABELLED_FILES := $(UNLABELLED:%=$(OUT)/eval/gate_%.h5)
+$(UNLABELLED_FILES): $(OUT)/eval/gate_%.h5: $(OUT)/gate.h5 | $(BIN)/evaluate
+	@mkdir -p $(@D)
+	$(BIN)/evaluate $(COMMON) --sim.engine=$(CHECK) $(RUNS) --eval.category=$* --policy=$< \
+	  --objects=$(OUT)/objects.csv --split=all --out=$@ >$(@:.h5=.txt)
+$(OUT)/tables/categories.md: $(OUT)/eval/gate.h5 $(UNLABELLED_FILES) | $(BIN)/tabulate
+	$(BIN)/tabulate --eval=$(call commas,$^) --labels="Category by label,Predicted category,Probabilities" \
+	  --out=$(basename $@)
 
 # A base policy on every engine. MuJoCo at about 1 ms is the referee, where it is installed.
 CHECKED := lanes ode $(if $(wildcard /usr/include/mujoco/mujoco.h),mujoco)
@@ -213,6 +234,8 @@ $(OUT)/figures/dataset.png: $(OUT)/dataset.csv | $(BIN)/render
 	$(BIN)/render --kind=dataset --objects=$< --out=$@
 $(OUT)/figures/parts.png: $(OUT)/objects.mk $(call OBJECT_FILES,parts) | $(BIN)/render
 	$(BIN)/render --kind=parts --objects=$(OUT)/objects.csv --out=$@
+$(OUT)/gallery/index.txt: $(OUT)/objects.mk $(call OBJECT_FILES,parts) $(call OBJECT_FILES,cloud) | $(BIN)/render
+	$(BIN)/render --kind=gallery --objects=$(OUT)/objects.csv --out=$(@D)
 $(OUT)/figures/hand.png: $(HAND) $(OUT)/settings.txt | $(BIN)/render
 	$(BIN)/render --kind=hand --hand=$(HAND) --out=$@
 $(OUT)/figures/strip.png: $(OUT)/eval/gate.h5 | $(BIN)/render
@@ -227,7 +250,7 @@ LEARN_COLUMNS := successes_per_600,drop_rate,mean_angle,goal_angle
 .PHONY: publish
 publish:  ## copy the tables and figures of a finished run to results/tables and paper_figs
 	@mkdir -p results/tables paper_figs
-	cp $(OUT)/tables/table1.md $(OUT)/tables/table1.csv $(OUT)/tables/table1.tex results/tables/
+	cp $(foreach t,table1 categories,$(addprefix $(OUT)/tables/$(t).,md csv tex)) results/tables/
 	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png curves.png per_object.png tsne.png strip.png) paper_figs/
 	@for run in cube six; do for table in results/$$run*/tables/learned.md; do [ ! -f $$table ] || \
 	  cp $$table results/tables/learned_$$(basename $$(dirname $$(dirname $$table))).md; done; done

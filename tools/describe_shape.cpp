@@ -22,9 +22,6 @@ int main(int argc, char** argv) {
     for (const Eigen::Vector3d& p : ReadCloud(cloud_path).points) points.push_back(p.cast<float>());
     const ShapeDescriptor descriptor = DescribeShape(net, points);
     WriteShape(out, descriptor, MakeProvenance(options, 0, {net_path, cloud_path}));
-    const std::vector<float> probability = CategoryProbabilities(descriptor);
-    const auto best = std::max_element(probability.begin(), probability.end());
-    std::printf("%s: %s with probability %.3f\n", cloud_path.c_str(),
-                kShapeCategories[best - probability.begin()], *best);
+    std::printf("%s: %s\n", cloud_path.c_str(), LikelyCategories(descriptor).c_str());
   });
 }

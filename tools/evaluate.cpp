@@ -62,6 +62,8 @@ std::vector<std::string> Inputs(const EvaluateOptions& o, const std::vector<Obje
   std::vector<std::string> inputs = {o.objects};
   if (o.policy != kHold) inputs.push_back(o.policy);
   for (const ObjectEntry& entry : entries) inputs.push_back(entry.grasps);
+  if (o.eval.category != "label")
+    for (const ObjectEntry& entry : entries) inputs.push_back(entry.folder + "/shape.h5");
   return inputs;
 }
 
@@ -72,6 +74,7 @@ EvalFile DescribeEval(const EvaluateOptions& o, const EvalSetup& setup) {
   file.substeps = setup.sim.substeps;
   file.seed = setup.seed;
   file.push = o.eval.push;
+  file.category_input = o.eval.category;
   for (const TaskObject& object : setup.objects)
     file.objects.push_back({object.name, kCategories[object.category], object.split});
   return file;
@@ -99,6 +102,7 @@ void Run(const EvaluateOptions& o, const Options& options) {
   const auto entries = SelectEntries(o);
   const Provenance provenance = MakeProvenance(options, o.seed, Inputs(o, entries));
   EvalSetup setup{o.task, o.sim, LoadHand(o.hand), LoadObjects(entries, {}), o.seed};
+  SetCategoryInput(o.eval.category, entries, setup.objects);
   ThreadPool pool(o.workers);
   std::unique_ptr<PolicyRunner> runner;
   if (o.policy != kHold) runner = std::make_unique<PolicyRunner>(o.policy, setup.objects, pool);

@@ -7,16 +7,16 @@
 #include "base/options.h"
 #include "geometry/object_files.h"
 #include "render/episode_view.h"
-#include "render/object_sheet.h"
+#include "render/gallery.h"
 #include "task/object_set.h"
 
 namespace dexremoe {
 namespace {
 
 struct RenderTool {
-  std::string kind, out, objects, trace, goal = "beside", up = "auto";
-  int width = 0, height = 480, frames = 8, episode = -1, first = 0, last = -1, columns = 0;
-  double rate = 30, explode = 0.25;
+  std::string kind, out, objects, object, trace, goal = "beside";
+  int height = 480, frames = 8, episode = -1, first = 0, last = -1;
+  double rate = 30;
   bool colliders = false;
   std::vector<int> steps;
   // Holds a ball of 30 mm radius (GX11).
@@ -24,25 +24,31 @@ struct RenderTool {
                            0.185, 1.554, 0.447, -0.450, 0.153};
   HandOptions hand;
   RenderOptions render;
+  SheetOptions sheet;
 
   void Register(Options& options);
   void RunEpisode() const;
   void RunHand() const;
-  void RunSheet() const;
+  void RunObject() const;
+  void RunSheets() const;
   std::vector<ObjectEntry> Entries() const;
   TriMesh MeshOf(const std::string& object) const;
-  int Width(int usual) const { return width > 0 ? width : usual; }
+  int Width(int usual) const { return sheet.width > 0 ? sheet.width : usual; }
 };
 
 void RenderTool::Register(Options& options) {
   options.Add("kind", &kind, "what to draw; sources and dataset: meshes as they come")
       .Required()
-      .Choices({"episode", "strip", "video", "objects", "sources", "dataset", "parts", "hand"});
-  options.Add("out", &out, "PNG file; MP4 for a video").Required().NotStored();
-  options.Add("objects", &objects, "objects.csv (all kinds but hand)");
+      .Choices({"episode", "strip", "video", "object", "objects", "sources", "dataset", "parts",
+                "clouds", "gallery", "hand"});
+  options.Add("out", &out, "PNG file; MP4 for a video; folder for a gallery")
+      .Required()
+      .NotStored();
+  options.Add("objects", &objects, "objects.csv (all kinds but object and hand)");
+  options.Add("object", &object, "mesh file, mesh.h5, parts.h5 or cloud.h5 (object)");
   options.Add("trace", &trace, "recorded episodes (episode, strip, video)");
-  options.Add("width", &width, "pixels; 0 takes what suits the kind").Range(0, 16384);
-  options.Add("height", &height, "pixels (episode, video, hand)").Range(16, 16384);
+  options.Add("width", &sheet.width, "pixels; 0 takes what suits the kind").Range(0, 16384);
+  options.Add("height", &height, "pixels (episode, video, object, hand)").Range(16, 16384);
   options.Add("episode", &episode, "number within the trace; -1 takes the most successful one");
   options.Add("first", &first, "first control step").Range(0, 1e9);
   options.Add("last", &last, "last control step, at most the episode's; -1 takes the end");
@@ -50,26 +56,16 @@ void RenderTool::Register(Options& options) {
   options.Add("steps", &steps, "control steps of a strip, or the one of an episode picture");
   options.Add("rate", &rate, "frames per second of a video").Range(1, 240);
   options.Add("goal", &goal, "where the goal is drawn").Choices({"beside", "below", "over"});
-  options
-      .Add("columns", &columns,
-           "cells side by side in a sheet; 0 takes 6 (objects, sources), 3 (parts)")
-      .Range(0, 64);
-  options.Add("up", &up, "upright axis: x, y, z, -x, -y, -z, or auto (of the meshes' manifest)");
-  options.Add("explode", &explode, "how far parts are moved apart, relative").Range(0, 5);
   options.Add("q", &q, "joint angles of the hand picture, rad");
   options.Add("colliders", &colliders, "overlay the hand's collision shapes");
   hand.Register(options);
   render.Register(options);
+  sheet.Register(options);
 }
 
 std::vector<ObjectEntry> RenderTool::Entries() const {
   if (objects.empty()) throw UsageError(fmt::format("--kind={} needs --objects=FILE", kind));
-  std::vector<ObjectEntry> entries = ReadObjectList(objects);
-  if (entries.empty()) Fail("{}: expected objects, found none", objects);
-  std::stable_sort(entries.begin(), entries.end(), [](const ObjectEntry& a, const ObjectEntry& b) {
-    return a.category < b.category;
-  });
-  return entries;
+  return ReadObjectList(objects);
 }
 
 // The mesh of the object that an episode shows.
@@ -111,24 +107,31 @@ void RenderTool::RunHand() const {
   WritePng(out, HandPicture(renderer, LoadHand(hand), q, colliders, Width(640), height));
 }
 
-void RenderTool::RunSheet() const {
-  const std::vector<ObjectEntry> entries = Entries();
-  Progress progress(kind, double(entries.size()));
-  const ObjectSource source = [&](int i) {
-    progress.Update(i, entries[i].name);
-    if (kind == "sources" || kind == "dataset") return ReadSourceObject(entries[i], up);
-    return ReadSheetObject(entries[i], up, kind == "parts");
+void RenderTool::RunObject() const {
+  if (object.empty()) throw UsageError("--kind=object needs --object=FILE");
+  const SheetObject shown = ReadSheetFile(object, sheet.up);
+  Renderer renderer(render);
+  WritePng(out, ObjectPicture(renderer, shown, sheet.explode, Width(640), height));
+}
+
+void RenderTool::RunSheets() const {
+  const std::vector<ObjectEntry> entries = ByCategory(Entries());
+  Progress progress(kind, double(entries.size()) * (kind == "gallery" ? 3 : 1));
+  const SheetProgress show = [&](int done, const std::string& name) {
+    progress.Update(done, name);
   };
   Renderer renderer(render);
   const Fonts fonts;
-  if (kind == "dataset")
+  if (kind == "dataset") {
+    const ObjectSource source = [&](int i) {
+      progress.Update(i, entries[i].name);
+      return ReadSheetObject(entries[i], sheet.up, SheetKind::kSources);
+    };
     WritePng(out, DatasetSheet(renderer, fonts, entries, source, Width(1800)));
-  else if (kind == "parts")
-    WritePng(out, PartsSheet(renderer, fonts, int(entries.size()), source, explode,
-                             columns > 0 ? columns : 3, Width(1500)));
+  } else if (kind == "gallery")
+    DrawGallery(renderer, fonts, entries, sheet, out, show);
   else
-    WritePng(out,
-             ObjectSheet(renderer, fonts, entries, source, columns > 0 ? columns : 6, Width(1440)));
+    WritePng(out, DrawSheet(renderer, fonts, SheetKindNamed(kind), entries, sheet, show));
   progress.Finish();
 }
 
@@ -144,7 +147,9 @@ int main(int argc, char** argv) {
   tool.Register(options);
   return RunTool(options, argc, argv, [&] {
     if (tool.kind == "hand") return tool.RunHand();
-    const bool episode = tool.kind == "episode" || tool.kind == "strip" || tool.kind == "video";
-    episode ? tool.RunEpisode() : tool.RunSheet();
+    if (tool.kind == "object") return tool.RunObject();
+    if (tool.kind == "episode" || tool.kind == "strip" || tool.kind == "video")
+      return tool.RunEpisode();
+    tool.RunSheets();
   });
 }

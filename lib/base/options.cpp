@@ -23,11 +23,11 @@ namespace {
 constexpr std::array<std::string_view, 13> kSections = {
     "scale", "decompose", "cloud", "shape", "hand", "sim",   "grasp",
     "task",  "policy",    "ppo",   "eval",  "tsne", "render"};
-constexpr std::array<std::string_view, 21> kTools = {
-    "make_objects", "scale_mesh",  "decompose",   "sample_cloud", "train_shape", "describe_shape",
-    "hand_info",    "find_grasps", "train_base",  "train_expert", "train_gate",  "evaluate",
-    "tabulate",     "embed_gate",  "plot",        "render",       "h5_info",     "h5_diff",
-    "list_objects", "bench_sim",   "validate_sim"};
+constexpr std::array<std::string_view, 22> kTools = {
+    "make_objects", "scale_mesh",  "decompose",    "sample_cloud", "train_shape", "describe_shape",
+    "hand_info",    "find_grasps", "train_base",   "train_expert", "train_gate",  "evaluate",
+    "tabulate",     "embed_gate",  "plot",         "render",       "h5_info",     "h5_diff",
+    "list_objects", "bench_sim",   "validate_sim", "mesh_info"};
 
 template <typename List>
 bool Contains(const List& list, std::string_view word) {

@@ -150,6 +150,8 @@ void WriteEval(const std::string& path, const EvalFile& eval, const Provenance& 
                                  {"1", "", "physics steps per control step"});
   file.WriteScalar("seed", eval.seed, {"1", "", "seed of the run"});
   file.WriteScalar("push", eval.push, {"N", "", "size of the pushes on the object; 0 = none"});
+  file.WriteString("category_input", eval.category_input,
+                   {"", "", "what the policy was told of categories: label, predicted or soft"});
   file.WriteStrings("object/name", name, {"", "object", "name in objects.csv"});
   file.WriteStrings("object/category", category, {"", "object", "category"});
   file.WriteStrings("object/split", split, {"", "object", "train or ood"});
@@ -169,6 +171,7 @@ EvalFile ReadEval(const std::string& path) {
   eval.substeps = file.ReadScalar<std::int32_t>("substeps");
   eval.seed = file.ReadScalar<std::uint64_t>("seed");
   eval.push = file.ReadScalar<double>("push");
+  if (file.Has("category_input")) eval.category_input = file.ReadString("category_input");
   const auto name = file.ReadStrings("object/name");
   const auto category = file.ReadStrings("object/category");
   const auto split = file.ReadStrings("object/split");

@@ -30,7 +30,8 @@ struct EvalFile {
   std::string engine;        // simulation engine
   int substeps = 0;          // physics steps per control step
   std::uint64_t seed = 0;
-  double push = 0;  // N; 0 = no disturbance
+  double push = 0;                       // N; 0 = no disturbance
+  std::string category_input = "label";  // or "predicted" or "soft": EvalOptions::category
   std::vector<EvalObject> objects;
   std::vector<EvalRun> runs;
 };

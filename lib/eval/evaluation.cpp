@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "base/random.h"
+#include "shape/shape_files.h"
 
 namespace dexremoe {
 namespace {
@@ -47,7 +48,27 @@ void EvalOptions::Register(Options& options) {
       .Range(1e-3, 3.15);
   options.Add("eval.push", &push, "force of the pushes on the object, N; 0 = none").Range(0, 1000);
   options.Add("eval.push_every", &push_every, "control steps between pushes").Range(1, 1e6);
+  options
+      .Add("eval.category", &category,
+           "what policies are told of an object's category: its label, the one that its shape is "
+           "taken for, or the probabilities of all")
+      .Choices({"label", "predicted", "soft"});
   options.Add("eval.resamples", &resamples, "bootstrap resamples for the intervals").Range(0, 1e6);
+}
+
+void SetCategoryInput(const std::string& choice, const std::vector<ObjectEntry>& entries,
+                      std::vector<TaskObject>& objects) {
+  DEX_CHECK_EQ(entries.size(), objects.size());
+  if (choice == "label") return;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    std::vector<float> input = CategoryProbabilities(ReadShape(entries[i].folder + "/shape.h5"));
+    if (choice == "predicted") {
+      const auto best = std::max_element(input.begin(), input.end()) - input.begin();
+      std::fill(input.begin(), input.end(), 0.0f);
+      input[best] = 1;
+    }
+    objects[i].category_input = input;
+  }
 }
 
 TaskOptions EvalTask(const EvalSetup& setup, double tolerance) {

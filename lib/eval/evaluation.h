@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "base/options.h"
@@ -21,7 +22,10 @@ struct EvalOptions {
   double push = 0;                              // N; a push lasts one control step
   int push_every = 60;                          // control steps between pushes
   int resamples = 2000;                         // of the bootstrap
-  void Register(Options& options);              // section "eval"
+  // What policies are told of the category: "label"; what PointNet++ takes each object for
+  // ("predicted"); or the probabilities of all ("soft").
+  std::string category = "label";
+  void Register(Options& options);  // section "eval"
 };
 
 // Episode `episode` with object `object`; the pair addresses all random streams of the episode.
@@ -67,6 +71,11 @@ struct EvalSetup {
   std::vector<TaskObject> objects;
   std::uint64_t seed = 0;
 };
+
+// Fills category_input of the objects from the logits in the shape.h5 of their entries, as `choice`
+// (EvalOptions::category) says; labels stay as they are. Throws Error.
+void SetCategoryInput(const std::string& choice, const std::vector<ObjectEntry>& entries,
+                      std::vector<TaskObject>& objects);
 
 // The task of an evaluation: setup.task at this tolerance, without the settings that serve training
 // alone (goal_timeout, near_share).

@@ -48,8 +48,9 @@ std::string MetricLines(const Metrics& metrics) {
 
 std::string ReportOf(const EvalFile& eval) {
   std::string text = fmt::format(
-      "{}: engine {} with {} substeps, seed {}{}\n", eval.policy, eval.engine, eval.substeps,
-      eval.seed, eval.push > 0 ? fmt::format(", pushes of {} N", eval.push) : std::string());
+      "{}: engine {} with {} substeps, seed {}{}{}\n", eval.policy, eval.engine, eval.substeps,
+      eval.seed, eval.push > 0 ? fmt::format(", pushes of {} N", eval.push) : std::string(),
+      eval.category_input == "label" ? "" : ", categories " + eval.category_input);
   for (const EvalRun& run : eval.runs) {
     text += fmt::format("\ntolerance {} rad, {} episodes\n", run.tolerance, run.episodes.size());
     text += ObjectLines(eval, run) + "\n";

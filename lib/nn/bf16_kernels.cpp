@@ -69,6 +69,7 @@ void Cast(std::int64_t count, const BFloat16* x, float* y) {
 
 void Cast(std::int64_t count, const BFloat16* x, BFloat16* y) { std::copy_n(x, count, y); }
 void Cast(std::int64_t count, const float* x, float* y) { std::copy_n(x, count, y); }
+void Cast(std::int64_t count, const float* x, double* y) { std::copy_n(x, count, y); }
 void Cast(std::int64_t count, const double* x, double* y) { std::copy_n(x, count, y); }
 
 }  // namespace dexremoe

@@ -33,6 +33,7 @@ void Cast(std::int64_t count, const float* x, BFloat16* y);
 void Cast(std::int64_t count, const BFloat16* x, float* y);
 void Cast(std::int64_t count, const BFloat16* x, BFloat16* y);
 void Cast(std::int64_t count, const float* x, float* y);
+void Cast(std::int64_t count, const float* x, double* y);
 void Cast(std::int64_t count, const double* x, double* y);
 
 }  // namespace dexremoe

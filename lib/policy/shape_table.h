@@ -14,13 +14,15 @@ struct ShapeTable {
   std::vector<std::string> names;
   std::vector<float> feature;  // [K, feature_size], as described, not normalised
   std::vector<int> category;   // [K]
+  // [K, categories] what stands in for the one-hot category, such as predictions; empty: nothing.
+  std::vector<float> category_input = {};
   int objects() const { return static_cast<int>(names.size()); }
 };
 
 // Throws Error naming the object whose descriptor is missing or of another size.
 ShapeTable MakeShapeTable(const std::vector<TaskObject>& objects);
 
-// A table ready for a policy: normalised descriptors and one-hot categories.
+// A table ready for a policy: normalised descriptors and categories.
 class ShapeRows {
  public:
   ShapeRows(const ShapeTable& table, const RunningMoments& moments, double clip,

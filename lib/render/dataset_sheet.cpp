@@ -73,7 +73,7 @@ Image DatasetSheet(Renderer& renderer, const Fonts& fonts, const std::vector<Obj
     const auto paste = [&](const std::vector<int>& members, int left, int columns) {
       for (int i = 0; i < int(members.size()); ++i)
         canvas.Paste(left + i % columns * layout.cell, top + i / columns * layout.picture,
-                     ObjectPicture(renderer, source(members[i]), b, layout.cell, layout.picture));
+                     CategoryPicture(renderer, source(members[i]), b, layout.cell, layout.picture));
     };
     paste(bands[b].train, 0, layout.columns);
     paste(bands[b].ood, split + layout.gap / 2, layout.rest);

@@ -54,7 +54,10 @@ Image MeshPicture(Renderer& renderer, const SheetObject& object, const Eigen::Ve
 Image PartsPicture(Renderer& renderer, const SheetObject& object, double explode, int width,
                    int height) {
   renderer.ClearMeshes();
-  Eigen::Vector3d middle = BoundsOf(object.mesh).Center();
+  Box3 box;
+  for (const TriMesh& part : object.parts)
+    for (const Eigen::Vector3d& vertex : part.vertices) box.Extend(vertex);
+  const Eigen::Vector3d middle = box.Center();
   std::vector<Item> items;
   for (std::size_t p = 0; p < object.parts.size(); ++p) {
     Item item;
@@ -134,9 +137,15 @@ Image ObjectSheet(Renderer& renderer, const Fonts& fonts, const std::vector<Obje
   return sheet;
 }
 
-Image ObjectPicture(Renderer& renderer, const SheetObject& object, int index, int width,
-                    int height) {
+Image CategoryPicture(Renderer& renderer, const SheetObject& object, int index, int width,
+                      int height) {
   return MeshPicture(renderer, object, ColorOf(index), width, height);
+}
+
+Image ObjectPicture(Renderer& renderer, const SheetObject& object, double explode, int width,
+                    int height) {
+  return object.parts.empty() ? MeshPicture(renderer, object, palette::kObject.color, width, height)
+                              : PartsPicture(renderer, object, explode, width, height);
 }
 
 Image PartsSheet(Renderer& renderer, const Fonts& fonts, int count, const ObjectSource& source,

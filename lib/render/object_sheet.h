@@ -20,8 +20,8 @@ Image ObjectSheet(Renderer& renderer, const Fonts& fonts, const std::vector<Obje
                   const ObjectSource& source, int columns, int width);
 
 // One object on a floor, in the colour of its category, `index` counted within kCategories.
-Image ObjectPicture(Renderer& renderer, const SheetObject& object, int index, int width,
-                    int height);
+Image CategoryPicture(Renderer& renderer, const SheetObject& object, int index, int width,
+                      int height);
 
 // The whole data set: a band for every category, its training objects left of a line, those out of
 // distribution right of it. `entries` by category; source(i) draws entries[i]; height follows.
@@ -32,5 +32,9 @@ Image DatasetSheet(Renderer& renderer, const Fonts& fonts, const std::vector<Obj
 // distance from the middle. `columns` pairs side by side.
 Image PartsSheet(Renderer& renderer, const Fonts& fonts, int count, const ObjectSource& source,
                  double explode, int columns, int width);
+
+// One object alone: its mesh, or its parts moved apart where it has any.
+Image ObjectPicture(Renderer& renderer, const SheetObject& object, double explode, int width,
+                    int height);
 
 }  // namespace dexremoe

@@ -18,11 +18,22 @@ struct SheetObject {
   std::string detail;                             // second line of the caption; may be empty
 };
 
-// mesh.h5 and, with `with_parts`, parts.h5 of the entry's folder. `up` as for UpAxis. Throws Error.
-SheetObject ReadSheetObject(const ObjectEntry& entry, const std::string& up, bool with_parts);
+// What of an object a sheet shows; kSources: the source mesh as it is, before anything is made of
+// it.
+enum class SheetKind { kMeshes, kSources, kParts, kClouds };
+// "objects", "sources", "parts" or "clouds".
+SheetKind SheetKindNamed(const std::string& name);
 
-// The entry's source mesh as it is, for pictures before anything is made of it. Throws Error.
-SheetObject ReadSourceObject(const ObjectEntry& entry, const std::string& up);
+// From the entry's folder mesh.h5, with its parts.h5 beside it, or in its place cloud.h5 as beads
+// or the source mesh, as `kind` says. `up` as for UpAxis. Throws Error.
+SheetObject ReadSheetObject(const ObjectEntry& entry, const std::string& up, SheetKind kind);
+
+// One object of any file: a mesh file, mesh.h5, parts.h5 (parts alone) or cloud.h5 (beads). Throws
+// Error for other files.
+SheetObject ReadSheetFile(const std::string& path, const std::string& up);
+
+// A small octahedron at every point.
+TriMesh BeadsOf(const std::vector<Eigen::Vector3d>& points, double radius);
 
 // Which way is up for an object: source meshes disagree (y in most, z in ours). "x", "y", "z",
 // "-x",

@@ -18,6 +18,14 @@ struct PolicyRunner::Impl {
   std::unique_ptr<Inference> inference;
   std::vector<float> weights;
   std::vector<float> obs, phys;  // normalised
+
+  std::vector<float> Weights(const ShapeRows& rows) const {
+    std::vector<float> weights(rows.inputs().objects * policy->gates());
+    Workspace<float> work;
+    if (policy->gates() > 0)
+      policy->GateWeights(state.params.data(), rows.inputs(), work, weights.data());
+    return weights;
+  }
 };
 
 PolicyRunner::PolicyRunner(const std::string& path, const std::vector<TaskObject>& objects,
@@ -33,7 +41,7 @@ PolicyRunner::PolicyRunner(const std::string& path, const std::vector<TaskObject
       std::make_unique<ShapeRows>(table, m.state.normalizers.feature, m.state.normalizers.clip,
                                   m.state.structure.num_categories);
   m.inference = std::make_unique<Inference>(*m.policy, pool);
-  m.weights = WeightsOf(table.feature, table.category);
+  m.weights = m.Weights(*m.shapes);
 }
 
 PolicyRunner::~PolicyRunner() = default;
@@ -81,14 +89,10 @@ std::vector<float> PolicyRunner::WeightsOf(const std::vector<float>& feature,
                                            const std::vector<int>& category) const {
   const Impl& m = *impl_;
   DEX_CHECK_EQ(feature.size(), category.size() * m.state.structure.feature_size);
-  const ShapeTable table = {std::vector<std::string>(category.size()), feature, category};
+  const ShapeTable table = {std::vector<std::string>(category.size()), feature, category, {}};
   const ShapeRows shapes(table, m.state.normalizers.feature, m.state.normalizers.clip,
                          m.state.structure.num_categories);
-  std::vector<float> weights(category.size() * gates());
-  Workspace<float> work;
-  if (gates() > 0)
-    m.policy->GateWeights(m.state.params.data(), shapes.inputs(), work, weights.data());
-  return weights;
+  return m.Weights(shapes);
 }
 
 }  // namespace dexremoe

@@ -18,10 +18,11 @@ int CategoryOf(const std::string& file, const std::string& object, const std::st
   return static_cast<int>(found - kShapeCategories.begin());
 }
 
-LabelledCloud ReadLabelledCloud(const std::string& path, const std::string& name, int category) {
+LabelledCloud ReadLabelledCloud(const std::string& folder, const std::string& name, int category) {
   std::vector<Eigen::Vector3f> points;
-  for (const Eigen::Vector3d& p : ReadCloud(path).points) points.push_back(p.cast<float>());
-  return {name, category, ToUnitSphere(points)};
+  for (const Eigen::Vector3d& p : ReadCloud(folder + "/cloud.h5").points)
+    points.push_back(p.cast<float>());
+  return {name, category, ToUnitSphere(points), folder};
 }
 
 }  // namespace
@@ -37,8 +38,8 @@ LabelledClouds ReadLabelledClouds(const std::string& objects_csv) {
            splits[i]);
     clouds.files.push_back(folders[i] + "/cloud.h5");
     auto& set = splits[i] == "train" ? clouds.train : clouds.held_out;
-    set.push_back(ReadLabelledCloud(clouds.files.back(), names[i],
-                                    CategoryOf(objects_csv, names[i], categories[i])));
+    set.push_back(
+        ReadLabelledCloud(folders[i], names[i], CategoryOf(objects_csv, names[i], categories[i])));
   }
   if (clouds.train.empty())
     Fail("{}: expected objects of the split 'train', found none in {} lines", objects_csv,

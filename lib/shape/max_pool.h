@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "nn/bfloat16.h"
+
 namespace dexremoe {
 
 // y [rows,k]; group g holds rows begin[g] .. begin[g+1]-1, at least one. pooled, winner [groups,k]:

@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "nn/kernels.h"
 #include "shape/max_pool.h"
 
 namespace dexremoe {
@@ -28,9 +29,9 @@ void JoinColumns(const std::vector<float>& coordinates, const std::vector<int>& 
   input.resize(rows * (3 + c));
   T* to = input.data();
   for (std::size_t row = 0; row < rows; ++row) {
-    to = std::copy_n(coordinates.data() + 3 * row, 3, to);
+    Cast(3, coordinates.data() + 3 * row, to);
     const std::size_t point = index.empty() ? row : index[row];
-    to = std::copy_n(features.data() + point * c, c, to);
+    to = std::copy_n(features.data() + point * c, c, to + 3);
   }
 }
 
@@ -51,7 +52,7 @@ void RunLevel(const Mlp& mlp, const T* params, const std::vector<int>& begin,
 template <typename T>
 void RunLevelBackward(const Mlp& mlp, const T* params, const T* dpooled, bool want_dx,
                       const typename PointNetWorkspace<T>::Level& level, PointNetWorkspace<T>& work,
-                      T* grads) {
+                      Wide<T>* grads) {
   const std::int64_t rows = static_cast<std::int64_t>(level.input.size()) / mlp.inputs();
   const int k = mlp.outputs();
   work.dy.resize(rows * k);
@@ -63,16 +64,18 @@ void RunLevelBackward(const Mlp& mlp, const T* params, const T* dpooled, bool wa
                want_dx ? work.dx.data() : nullptr, grads, work.scratch.data());
 }
 
-// Adds the feature columns of work.dx [rows, 3+c] to work.dpooled [points, c].
+// Adds up the feature columns of work.dx [rows, 3+c] point by point: work.dpooled [points, c].
 template <typename T>
 void ScatterFeatures(const std::vector<int>& index, int points, int c, PointNetWorkspace<T>& work) {
-  work.dpooled.assign(static_cast<std::size_t>(points) * c, T(0));
+  const std::int64_t size = std::int64_t{points} * c;
+  work.dfeatures.assign(size, Wide<T>(0));
+  work.dpooled.resize(size);
   const std::size_t rows = work.dx.size() / (3 + c);
   for (std::size_t row = 0; row < rows; ++row) {
-    const T* from = work.dx.data() + row * (3 + c) + 3;
-    T* to = work.dpooled.data() + (index.empty() ? row : index[row]) * c;
-    for (int j = 0; j < c; ++j) to[j] += from[j];
+    const std::size_t point = index.empty() ? row : index[row];
+    AddTo(c, work.dx.data() + row * (3 + c) + 3, work.dfeatures.data() + point * c);
   }
+  Cast(size, work.dfeatures.data(), work.dpooled.data());
 }
 
 }  // namespace
@@ -96,7 +99,9 @@ template <typename T>
 void PointNet::ForwardCloud(const T* params, const GroupedCloud& cloud,
                             typename PointNetWorkspace<T>::Cloud& work) const {
   auto& [level1, level2, level3] = work.levels;
-  level1.input.assign(cloud.level1.local.begin(), cloud.level1.local.end());
+  level1.input.resize(cloud.level1.local.size());
+  Cast(static_cast<std::int64_t>(level1.input.size()), cloud.level1.local.data(),
+       level1.input.data());
   RunLevel<T>(level_[0], params, cloud.level1.begin, level1);
   JoinColumns(cloud.level2.local, cloud.level2.index, level_[0].outputs(), level1.pooled,
               level2.input);
@@ -120,14 +125,18 @@ void PointNet::Forward(const T* params, std::span<const GroupedCloud> clouds,
   work.feature.resize(feature_.ActivationSize(n));
   work.classifier.resize(classifier_.ActivationSize(n));
   const T* head = head_.Forward(params, n, work.global.data(), work.head.data());
-  work.p = feature_.Forward(params, n, head, work.feature.data());
-  work.logits = classifier_.Forward(params, n, work.p, work.classifier.data());
+  const T* p = feature_.Forward(params, n, head, work.feature.data());
+  const T* logits = classifier_.Forward(params, n, p, work.classifier.data());
+  work.p.resize(n * feature_.outputs());
+  work.logits.resize(n * classifier_.outputs());
+  Cast(n * feature_.outputs(), p, work.p.data());
+  Cast(n * classifier_.outputs(), logits, work.logits.data());
 }
 
 template <typename T>
 void PointNet::BackwardCloud(const T* params, const GroupedCloud& cloud, const T* dglobal,
                              typename PointNetWorkspace<T>::Cloud& kept, PointNetWorkspace<T>& work,
-                             T* grads) const {
+                             Wide<T>* grads) const {
   const auto& [level1, level2, level3] = kept.levels;
   RunLevelBackward<T>(level_[2], params, dglobal, true, level3, work, grads);
   ScatterFeatures(std::vector<int>(), cloud.level2.count(), level_[1].outputs(), work);
@@ -137,16 +146,18 @@ void PointNet::BackwardCloud(const T* params, const GroupedCloud& cloud, const T
 }
 
 template <typename T>
-void PointNet::Backward(const T* params, std::span<const GroupedCloud> clouds, T* dlogits,
-                        PointNetWorkspace<T>& work, T* grads) const {
+void PointNet::Backward(const T* params, std::span<const GroupedCloud> clouds,
+                        const Wide<T>* dlogits, PointNetWorkspace<T>& work, Wide<T>* grads) const {
   const auto n = static_cast<std::int64_t>(clouds.size());
   DEX_CHECK_EQ(static_cast<std::int64_t>(work.global.size()), n * level_[2].outputs());
   const T* head = work.head.data() + work.head.size() - n * head_.outputs();
-  std::vector<T> dp(n * feature_.outputs()), dhead(n * head_.outputs());
+  std::vector<T> dy(n * classifier_.outputs()), dp(n * feature_.outputs()),
+      dhead(n * head_.outputs());
   std::vector<T> dglobal(n * head_.inputs());
   work.scratch.resize(head_.ScratchSize(n));
-  classifier_.Backward(params, n, work.p, work.classifier.data(), dlogits, dp.data(), grads,
-                       work.scratch.data());
+  Cast(n * classifier_.outputs(), dlogits, dy.data());
+  classifier_.Backward(params, n, work.feature.data(), work.classifier.data(), dy.data(), dp.data(),
+                       grads, work.scratch.data());
   feature_.Backward(params, n, head, work.feature.data(), dp.data(), dhead.data(), grads,
                     work.scratch.data());
   head_.Backward(params, n, work.global.data(), work.head.data(), dhead.data(), dglobal.data(),
@@ -192,8 +203,9 @@ void PointNet::NormalizeStage(int stage, std::span<const GroupedCloud> clouds,
 #define DEX_INSTANTIATE(T)                                                                        \
   template void PointNet::Forward(const T*, std::span<const GroupedCloud>, PointNetWorkspace<T>&) \
       const;                                                                                      \
-  template void PointNet::Backward(const T*, std::span<const GroupedCloud>, T*,                   \
-                                   PointNetWorkspace<T>&, T*) const;
+  template void PointNet::Backward(const T*, std::span<const GroupedCloud>, const Wide<T>*,       \
+                                   PointNetWorkspace<T>&, Wide<T>*) const;
+DEX_INSTANTIATE(BFloat16)
 DEX_INSTANTIATE(float)
 DEX_INSTANTIATE(double)
 #undef DEX_INSTANTIATE

@@ -4,8 +4,8 @@
 //   cloud -> set abstraction 1 -> set abstraction 2 -> group all -> head widths -> p -> category
 //
 // A set abstraction runs a small network over every point of every neighbourhood and keeps the
-// maximum over the neighbourhood. Forward stands beside backward; float for use, double for
-// gradient checks.
+// maximum over the neighbourhood. Forward stands beside backward; float for use, float or bfloat16
+// for training, double for gradient checks.
 #pragma once
 
 #include <array>
@@ -43,7 +43,8 @@ struct PointNetSizes {
   void Check() const;
 };
 
-// What a forward pass of some clouds keeps for the backward pass, and scratch.
+// What a forward pass of some clouds keeps for the backward pass, and scratch. T is what weights
+// and activations are stored in.
 template <typename T>
 struct PointNetWorkspace {
   struct Level {
@@ -58,9 +59,9 @@ struct PointNetWorkspace {
   std::vector<Cloud> clouds;
   std::vector<T> global;                     // [B, last of widths3]
   std::vector<T> head, feature, classifier;  // activations of the three
-  const T* p = nullptr;                      // [B, feature size], inside `feature`
-  const T* logits = nullptr;                 // [B, categories], inside `classifier`
+  std::vector<Wide<T>> p, logits;            // [B, feature size], [B, categories]
   std::vector<T> dy, dx, dpooled, scratch;
+  std::vector<Wide<T>> dfeatures;  // of a level's points, summed over the groups they are in
 };
 
 class PointNet {
@@ -75,10 +76,10 @@ class PointNet {
   template <typename T>
   void Forward(const T* params, std::span<const GroupedCloud> clouds,
                PointNetWorkspace<T>& work) const;
-  // dlogits [B, categories] is overwritten; adds to grads. The workspace holds the forward pass.
+  // dlogits [B, categories]; adds to grads. The workspace holds the forward pass.
   template <typename T>
-  void Backward(const T* params, std::span<const GroupedCloud> clouds, T* dlogits,
-                PointNetWorkspace<T>& work, T* grads) const;
+  void Backward(const T* params, std::span<const GroupedCloud> clouds, const Wide<T>* dlogits,
+                PointNetWorkspace<T>& work, Wide<T>* grads) const;
 
   // Random weights, then normalised layer by layer on `clouds` (Mlp::NormalizeOnData), so that what
   // all clouds have in common does not drown what tells them apart.
@@ -91,7 +92,7 @@ class PointNet {
   template <typename T>
   void BackwardCloud(const T* params, const GroupedCloud& cloud, const T* dglobal,
                      typename PointNetWorkspace<T>::Cloud& kept, PointNetWorkspace<T>& work,
-                     T* grads) const;
+                     Wide<T>* grads) const;
   void NormalizeStage(int stage, std::span<const GroupedCloud> clouds, float* params) const;
 
   PointNetSizes sizes_;

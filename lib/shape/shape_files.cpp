@@ -82,6 +82,7 @@ void WriteShapeNet(const std::string& path, const ShapeNet& net, const ShapeTrai
   file.WriteStrings("categories", {kShapeCategories.begin(), kShapeCategories.end()},
                     {"1", "category", "names in the order of the logits"});
   WriteSizes(file, net.net.sizes());
+  file.WriteString("precision", training.precision, {"", "", "of the training: f32 or bf16"});
   for (const ParamBlock& block : net.layout.blocks()) {
     const auto begin = net.params.begin() + block.offset;
     file.Write("weights/" + block.name, std::vector<float>(begin, begin + block.size()),
@@ -123,6 +124,9 @@ void WriteShape(const std::string& path, const ShapeDescriptor& descriptor,
              {"1", "component", "p, the PointNet++ descriptor of the shape"});
   file.Write("logits", descriptor.logits, {static_cast<std::int64_t>(kShapeCategories.size())},
              {"1", "category", "scores of airplane, animal, head, shoe, train, vehicle"});
+  file.Write("probabilities", CategoryProbabilities(descriptor),
+             {static_cast<std::int64_t>(kShapeCategories.size())},
+             {"1", "category", "softmax of the logits: the category without a label"});
   file.Commit();
 }
 

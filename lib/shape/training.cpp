@@ -7,7 +7,9 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "nn/adam.h"
+#include "nn/kernels.h"
 #include "nn/layers.h"
+#include "nn/precision.h"
 
 namespace dexremoe {
 namespace {
@@ -35,6 +37,8 @@ struct EpochResult {
   double loss = 0, accuracy = 0;
 };
 
+// T is what weights and activations are stored in; the weights that Adam moves are net.params.
+template <typename T>
 class Trainer {
  public:
   Trainer(const std::vector<LabelledCloud>& clouds, const ShapeTrainOptions& options,
@@ -44,6 +48,7 @@ class Trainer {
         seed_(seed),
         pool_(pool),
         net_(net),
+        stored_(net.params.size()),
         workspaces_(pool.workers()),
         chunk_grads_((options.batch + kCloudsPerChunk - 1) / kCloudsPerChunk),
         grads_(net.params.size()) {}
@@ -57,6 +62,7 @@ class Trainer {
     }
     Rng rng(seed_, Stream::kInit);
     net_.net.Initialize(rng, grouped, net_.params.data());
+    Store();
   }
 
   EpochResult RunEpoch(int epoch, double rate) {
@@ -103,6 +109,11 @@ class Trainer {
     if (!std::isfinite(norm))
       Fail("train_shape: the gradient is not finite in epoch {}; try a lower shape.rate", epoch);
     AdamStep({}, rate, grads_, adam_, net_.params);
+    Store();
+  }
+
+  void Store() {
+    Cast(static_cast<std::int64_t>(stored_.size()), net_.params.data(), stored_.data());
   }
 
   GroupedCloud Variant(AugmentUse use, int epoch, const Sample& sample) const {
@@ -113,13 +124,13 @@ class Trainer {
   }
 
   void RunChunk(int epoch, std::span<const Sample> samples, float weight,
-                PointNetWorkspace<float>& work, float* grads, SampleResult* results) const {
+                PointNetWorkspace<T>& work, float* grads, SampleResult* results) const {
     std::vector<GroupedCloud> grouped;
     for (const Sample& sample : samples) grouped.push_back(Variant(kForTraining, epoch, sample));
-    net_.net.Forward<float>(net_.params.data(), grouped, work);
+    net_.net.Forward<T>(stored_.data(), grouped, work);
     const int k = net_.net.sizes().categories;
     std::vector<float> dlogits(samples.size() * k);
-    SoftmaxForward<float>(static_cast<std::int64_t>(samples.size()), k, work.logits,
+    SoftmaxForward<float>(static_cast<std::int64_t>(samples.size()), k, work.logits.data(),
                           dlogits.data());
     // Cross-entropy of the softmax: its gradient is the probabilities minus the label's one.
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -130,7 +141,7 @@ class Trainer {
       row[label] -= 1;
       for (int j = 0; j < k; ++j) row[j] *= weight;
     }
-    net_.net.Backward<float>(net_.params.data(), grouped, dlogits.data(), work, grads);
+    net_.net.Backward<T>(stored_.data(), grouped, dlogits.data(), work, grads);
   }
 
   // grads_ = sum of the chunks' gradients, in chunk order; parallel over ranges of parameters.
@@ -150,7 +161,8 @@ class Trainer {
   std::uint64_t seed_;
   ThreadPool& pool_;
   ShapeNet& net_;
-  std::vector<PointNetWorkspace<float>> workspaces_;
+  std::vector<T> stored_;  // net_.params as of the last step
+  std::vector<PointNetWorkspace<T>> workspaces_;
   std::vector<std::vector<float>> chunk_grads_;
   std::vector<float> grads_;
   AdamState adam_;
@@ -159,6 +171,31 @@ class Trainer {
 double RateOf(const ShapeTrainOptions& options, int epoch) {
   const int decays = epoch * (options.decays + 1) / options.epochs;
   return options.rate * std::pow(options.decay, decays);
+}
+
+template <typename T>
+ShapeTraining Train(const LabelledClouds& clouds, const ShapeTrainOptions& options,
+                    std::uint64_t seed, ThreadPool& pool, ShapeNet& net) {
+  Trainer<T> trainer(clouds.train, options, seed, pool, net);
+  trainer.Initialize();
+  ShapeTraining training;
+  ShapeCurve& curve = training.curve;
+  Progress progress("train_shape", options.epochs);
+  for (int epoch = 0; epoch < options.epochs; ++epoch) {
+    const double rate = RateOf(options, epoch);
+    const EpochResult result = trainer.RunEpoch(epoch, rate);
+    const bool try_now = (epoch + 1) % options.evaluate_every == 0 || epoch + 1 == options.epochs;
+    if (try_now) training.held_out = TryShapes(net, clouds.held_out, options.rotations, seed, pool);
+    curve.epoch.push_back(epoch + 1);
+    curve.rate.push_back(rate);
+    curve.loss.push_back(result.loss);
+    curve.train_accuracy.push_back(result.accuracy);
+    curve.held_out_accuracy.push_back(try_now ? training.held_out.Accuracy() : NAN);
+    progress.Update(epoch + 1,
+                    fmt::format("loss {:.3f}  right {:.0f} %", result.loss, 100 * result.accuracy));
+  }
+  progress.Finish();
+  return training;
 }
 
 }  // namespace
@@ -178,6 +215,10 @@ void ShapeTrainOptions::Register(Options& registry) {
       .Range(1, 10000);
   registry.Add("shape.evaluate_every", &evaluate_every, "epochs between trials on held-out objects")
       .Range(1, 100000);
+  registry
+      .Add("shape.precision", &precision,
+           "what the network trains in; auto: bf16 where the processor has it")
+      .Choices({"auto", "f32", "bf16"});
   augment.Register(registry);
 }
 
@@ -213,25 +254,10 @@ ShapeTrial TryShapes(const ShapeNet& net, const std::vector<LabelledCloud>& clou
 
 ShapeTraining TrainShape(const LabelledClouds& clouds, const ShapeTrainOptions& options,
                          std::uint64_t seed, ThreadPool& pool, ShapeNet& net) {
-  Trainer trainer(clouds.train, options, seed, pool, net);
-  trainer.Initialize();
-  ShapeTraining training;
-  ShapeCurve& curve = training.curve;
-  Progress progress("train_shape", options.epochs);
-  for (int epoch = 0; epoch < options.epochs; ++epoch) {
-    const double rate = RateOf(options, epoch);
-    const EpochResult result = trainer.RunEpoch(epoch, rate);
-    const bool try_now = (epoch + 1) % options.evaluate_every == 0 || epoch + 1 == options.epochs;
-    if (try_now) training.held_out = TryShapes(net, clouds.held_out, options.rotations, seed, pool);
-    curve.epoch.push_back(epoch + 1);
-    curve.rate.push_back(rate);
-    curve.loss.push_back(result.loss);
-    curve.train_accuracy.push_back(result.accuracy);
-    curve.held_out_accuracy.push_back(try_now ? training.held_out.Accuracy() : NAN);
-    progress.Update(epoch + 1,
-                    fmt::format("loss {:.3f}  right {:.0f} %", result.loss, 100 * result.accuracy));
-  }
-  progress.Finish();
+  const std::string precision = ResolvePrecision(options.precision);
+  ShapeTraining training = precision == "bf16" ? Train<BFloat16>(clouds, options, seed, pool, net)
+                                               : Train<float>(clouds, options, seed, pool, net);
+  training.precision = precision;
   return training;
 }
 

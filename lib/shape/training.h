@@ -17,6 +17,7 @@ struct LabelledCloud {
   std::string name;
   int category = 0;
   std::vector<Eigen::Vector3f> points;  // unit sphere
+  std::string folder;                   // of mesh.h5 and cloud.h5; empty for one made in memory
 };
 
 // What objects.csv says, with every object's FOLDER/cloud.h5.
@@ -37,6 +38,9 @@ struct ShapeTrainOptions {
   double max_norm = 1;      // bound on the gradient's norm
   int rotations = 8;        // orientations in which a held-out object is tried
   int evaluate_every = 10;  // epochs between trials
+  // "f32", "bf16" or "auto": what weights and activations are stored in while they train; the
+  // trained weights are float32 always.
+  std::string precision = "auto";
   AugmentOptions augment;
   void Register(Options& options);
 };
@@ -58,11 +62,13 @@ ShapeTrial TryShapes(const ShapeNet& net, const std::vector<LabelledCloud>& clou
 
 struct ShapeTraining {
   ShapeCurve curve;
-  ShapeTrial held_out;  // of the trained network
+  ShapeTrial held_out;            // of the trained network
+  std::string precision = "f32";  // that it was trained in: "f32" or "bf16"
 };
 
 // Initialises net.params and trains them with Adam on the cross-entropy of the category. The result
-// depends on the seed, not on the number of workers.
+// depends on the seed and the precision, not on the number of workers. Throws Error for a precision
+// that is not to be had on this processor.
 ShapeTraining TrainShape(const LabelledClouds& clouds, const ShapeTrainOptions& options,
                          std::uint64_t seed, ThreadPool& pool, ShapeNet& net);
 

@@ -50,7 +50,9 @@ struct TaskObject {
   SimObject sim;
   double mass = 0;             // nominal, kg
   std::vector<float> feature;  // [kShapeFeatureSize]; empty when not loaded
-  std::vector<Grasp> grasps;   // empty when not loaded
+  // [kNumCategories] what policies see of the category; empty: the label, one-hot.
+  std::vector<float> category_input;
+  std::vector<Grasp> grasps;  // empty when not loaded
 };
 
 // mesh.h5 and parts.h5 alone, for stages before shape.h5 and the grasps exist. Throws Error.

@@ -91,5 +91,29 @@ TEST(PolicyRunner, GateWeightsFollowTheObjects) {
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(one[i], mixed[i], 1e-5);
 }
 
+TEST(PolicyRunner, APredictedCategoryActsLikeTheLabelItNames) {
+  const TemporaryFolder folder("predicted");
+  WriteCheckpoint(folder / "base.h5", ToyBase(), ToyProvenance());
+  ThreadPool pool(1);
+  ToyEnv env(8, 3);
+  env.ResetAll();
+  const auto act = [&](const std::vector<TaskObject>& objects) {
+    PolicyRunner runner(folder / "base.h5", objects, pool);
+    std::vector<float> actions;
+    runner.Act(env.obs(), env.phys(), env.object(), actions);
+    return actions;
+  };
+  const std::vector<TaskObject> labelled = ToyObjects();
+  std::vector<TaskObject> predicted = labelled, wrong = labelled;
+  for (TaskObject& object : predicted) {
+    object.category_input.assign(kNumCategories, 0.0f);
+    object.category_input[object.category] = 1;
+    object.category = 0;
+  }
+  for (TaskObject& object : wrong) object.category_input = {0, 0, 0, 0, 0, 1};
+  EXPECT_EQ(act(predicted), act(labelled));
+  EXPECT_NE(act(wrong), act(labelled));
+}
+
 }  // namespace
 }  // namespace dexremoe

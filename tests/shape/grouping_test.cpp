@@ -12,6 +12,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "nn/kernels.h"
 #include "shape/farthest.h"
 #include "shape/max_pool.h"
 #include "shapes.h"
@@ -145,18 +146,22 @@ TEST(GroupCloud, RefusesCloudsThatAreNone) {
   EXPECT_THAT([&] { GroupCloud(points, 96, one, two); }, ThrowsMessage<Error>(HasSubstr("finite")));
 }
 
-TEST(MaxPool, FloatAndDoubleMatchBruteForceAndTheFirstOfEqualsWins) {
+TEST(MaxPool, EveryTypeMatchesBruteForceAndTheFirstOfEqualsWins) {
   const std::vector<int> begin = {0, 3, 4, 9};
   const int k = 37;
   Rng rng(19, Stream::kTest);
   std::vector<double> y(9 * k);
-  for (double& value : y) value = static_cast<double>(rng.Index(4));  // many equal values
+  // Many equal values; bfloat16 holds them exactly.
+  for (double& value : y) value = static_cast<double>(rng.Index(5)) - 2;
   const std::vector<float> yf(y.begin(), y.end());
+  std::vector<BFloat16> yb(9 * k), pooled_b(3 * k);
+  Cast(9 * k, yf.data(), yb.data());
   std::vector<double> pooled(3 * k);
   std::vector<float> pooled_f(3 * k);
-  std::vector<std::int32_t> winner(3 * k), winner_f(3 * k);
+  std::vector<std::int32_t> winner(3 * k), winner_f(3 * k), winner_b(3 * k);
   MaxPoolForward(begin, k, y.data(), pooled.data(), winner.data());
   MaxPoolForward(begin, k, yf.data(), pooled_f.data(), winner_f.data());
+  MaxPoolForward(begin, k, yb.data(), pooled_b.data(), winner_b.data());
   for (int g = 0; g < 3; ++g)
     for (int j = 0; j < k; ++j) {
       int best = begin[g];
@@ -164,8 +169,10 @@ TEST(MaxPool, FloatAndDoubleMatchBruteForceAndTheFirstOfEqualsWins) {
         if (y[row * k + j] > y[best * k + j]) best = row;
       EXPECT_EQ(winner[g * k + j], best);
       EXPECT_EQ(winner_f[g * k + j], best);
+      EXPECT_EQ(winner_b[g * k + j], best);
       EXPECT_EQ(pooled[g * k + j], y[best * k + j]);
       EXPECT_EQ(pooled_f[g * k + j], yf[best * k + j]);
+      EXPECT_EQ(pooled_b[g * k + j].bits, yb[best * k + j].bits);
     }
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "nn/gradient_check.h"
+#include "nn/kernels.h"
 #include "shape/shape_net.h"
 #include "shapes.h"
 
@@ -90,6 +91,37 @@ TEST(PointNet, BackwardAddsAndFloatMatchesDouble) {
     EXPECT_NEAR(grads_f[i], 2 * grads[i], 1e-4 * (1 + std::abs(grads[i])));
 }
 
+TEST(PointNet, GradientInBfloat16PointsWhereTheExactOneDoes) {
+  PointNetSizes sizes = SmallSizes();
+  sizes.widths3 = {32, 64};
+  const ShapeNet net = RandomNet(sizes, 9);
+  std::vector<GroupedCloud> clouds;
+  for (int i = 0; i < 4; ++i) clouds.push_back(net.net.Group(RandomCloud(60, 70 + i)));
+  const std::vector<double> params(net.params.begin(), net.params.end());
+  std::vector<BFloat16> stored(params.size());
+  Cast(std::ssize(net.params), net.params.data(), stored.data());
+  PointNetWorkspace<double> work;
+  PointNetWorkspace<BFloat16> work_b;
+  net.net.Forward<double>(params.data(), clouds, work);
+  net.net.Forward<BFloat16>(stored.data(), clouds, work_b);
+  const std::vector<double> dlogits = {1, -2, 0.5, 0.3, 0.2, -0.7, 1.1, 0.4, -0.9, -0.6, 0.8, 0.1};
+  const std::vector<float> dlogits_f(dlogits.begin(), dlogits.end());
+  std::vector<double> grads(params.size(), 0.0);
+  std::vector<float> grads_b(params.size(), 0.0f);
+  net.net.Backward<double>(params.data(), clouds, dlogits.data(), work, grads.data());
+  net.net.Backward<BFloat16>(stored.data(), clouds, dlogits_f.data(), work_b, grads_b.data());
+  double inner = 0, square = 0, square_b = 0;
+  for (std::size_t i = 0; i < grads.size(); ++i) {
+    inner += grads[i] * grads_b[i];
+    square += grads[i] * grads[i];
+    square_b += double{grads_b[i]} * grads_b[i];
+  }
+  EXPECT_GT(inner / std::sqrt(square * square_b), 0.98);
+  EXPECT_NEAR(std::sqrt(square_b / square), 1, 0.05);
+  for (std::size_t j = 0; j < work.logits.size(); ++j)
+    EXPECT_NEAR(work_b.logits[j], work.logits[j], 0.05 * (1 + std::abs(work.logits[j])));
+}
+
 // The original pads each ball with copies of its first point; leaving them out changes nothing.
 GroupedCloud Padded(const GroupedCloud& cloud, const PointNetSizes& sizes) {
   const auto pad = [](const Groups& groups, int neighbors) {
@@ -122,7 +154,7 @@ TEST(PointNet, LeavingOutThePaddingChangesNeitherOutputNorGradient) {
     PointNetWorkspace<double> work;
     const GroupedCloud& used = pad ? padded : cloud;
     net.net.Forward<double>(params.data(), {&used, 1}, work);
-    logits[pad].assign(work.logits, work.logits + 3);
+    logits[pad] = work.logits;
     grads[pad].assign(params.size(), 0.0);
     std::vector<double> dlogits = {1, 2, -3};
     net.net.Backward<double>(params.data(), {&used, 1}, dlogits.data(), work, grads[pad].data());

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "io/atomic_file.h"
+#include "nn/precision.h"
 #include "shape/cloud.h"
 #include "shape/grouping.h"
 #include "shape/shape_files.h"
@@ -41,7 +42,7 @@ LabelledCloud Surface(const std::string& name, int category, const TriMesh& mesh
   std::vector<Eigen::Vector3f> points;
   for (const Eigen::Vector3d& p : SampleCloud(mesh, options, 1).points)
     points.push_back(p.cast<float>());
-  return {name, category, ToUnitSphere(points)};
+  return {name, category, ToUnitSphere(points), ""};
 }
 
 // Two easy categories: sticks and balls; other sticks and balls are held out.
@@ -120,11 +121,14 @@ TEST(AugmentCloud, ThinsJittersAndStretchesWithinTheirBounds) {
   EXPECT_GE(AugmentCloud(RandomCloud(5, 4), {0, 0.95, 0, 0}, rng).size(), 4u);
 }
 
-TEST(TrainShape, TellsSticksFromBalls) {
+class TrainShapeIn : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(TrainShapeIn, TellsSticksFromBalls) {
   const LabelledClouds clouds = SticksAndBalls();
   ShapeNet net(TinySizes());
   ThreadPool pool(2);
-  const ShapeTrainOptions options = ShortTraining();
+  ShapeTrainOptions options = ShortTraining();
+  options.precision = GetParam();
   const ShapeTraining training = TrainShape(clouds, options, 1, pool, net);
   const ShapeCurve& curve = training.curve;
   ASSERT_EQ(curve.loss.size(), 60u);
@@ -146,9 +150,10 @@ TEST(TrainShape, TellsSticksFromBalls) {
   EXPECT_NEAR(trial.Accuracy(), diagonal / 40.0, 1e-12);
 }
 
-TEST(TrainShape, BitsDependOnTheSeedAndNotOnTheWorkers) {
+TEST_P(TrainShapeIn, BitsDependOnTheSeedAndNotOnTheWorkers) {
   const LabelledClouds clouds = SticksAndBalls();
   ShapeTrainOptions options = ShortTraining();
+  options.precision = GetParam();
   options.epochs = 2;
   const auto train = [&](int workers, std::uint64_t seed) {
     ShapeNet net(TinySizes());
@@ -162,6 +167,36 @@ TEST(TrainShape, BitsDependOnTheSeedAndNotOnTheWorkers) {
   EXPECT_NE(train(1, 6), reference);
 }
 
+INSTANTIATE_TEST_SUITE_P(Precision, TrainShapeIn, ::testing::ValuesIn(NativePrecisions()),
+                         [](const auto& info) { return info.param; });
+
+// Cosine distance of two descriptors.
+double Apart(const ShapeDescriptor& a, const ShapeDescriptor& b) {
+  const Eigen::Map<const Eigen::VectorXf> p(a.feature.data(), std::ssize(a.feature)),
+      q(b.feature.data(), std::ssize(b.feature));
+  return 1 - p.dot(q) / (p.norm() * q.norm());
+}
+
+TEST(DescribeShape, ChangesLittleWhenTheSurfaceIsSampledAnew) {
+  ShapeNet net(TinySizes());
+  ThreadPool pool(2);
+  TrainShape(SticksAndBalls(), ShortTraining(), 3, pool, net);
+  CloudOptions options;
+  options.points = 96;
+  const auto describe = [&](const TriMesh& mesh, std::uint64_t seed) {
+    std::vector<Eigen::Vector3f> points;
+    for (const Eigen::Vector3d& p : SampleCloud(mesh, options, seed).points)
+      points.push_back(p.cast<float>());
+    return DescribeShape(net, points);
+  };
+  const TriMesh stick = BoxMesh({0.015, 0.015, 0.07}), ball = SphereMesh(0.03, 16);
+  const double apart = Apart(describe(stick, 1), describe(ball, 1));
+  for (std::uint64_t seed = 2; seed < 8; ++seed) {
+    EXPECT_LT(Apart(describe(stick, 1), describe(stick, seed)), 0.1 * apart);
+    EXPECT_LT(Apart(describe(ball, 1), describe(ball, seed)), 0.1 * apart);
+  }
+}
+
 TEST(ShapeFiles, NetworkAndDescriptorSurviveARoundTrip) {
   ShapeNet net(TinySizes());
   Rng rng(7, Stream::kInit);
@@ -169,7 +204,7 @@ TEST(ShapeFiles, NetworkAndDescriptorSurviveARoundTrip) {
   const std::string path = TemporaryPath("shape_net.h5"), shape = TemporaryPath("shape.h5");
   const ShapeCurve curve = {{1, 2}, {0.1, 0.1}, {1.5, 1.2}, {0.2, 0.4}, {NAN, 0.5}};
   const ShapeTrial trial = {{"cube"}, {0.75}, std::vector<std::int32_t>(36, 1)};
-  WriteShapeNet(path, net, {curve, trial}, {"test", "", 1, {}});
+  WriteShapeNet(path, net, {curve, trial, "bf16"}, {"test", "", 1, {}});
   const ShapeNet read = ReadShapeNet(path);
   EXPECT_EQ(read.params, net.params);
   const auto points = RandomCloud(80, 5);
@@ -178,10 +213,18 @@ TEST(ShapeFiles, NetworkAndDescriptorSurviveARoundTrip) {
   WriteShape(shape, descriptor, {"test", "", 1, {}});
   EXPECT_EQ(ReadShape(shape).feature, descriptor.feature);
   EXPECT_EQ(ReadShape(shape).logits, descriptor.logits);
+  EXPECT_EQ(H5Reader(shape, kShapeFormat).ReadValues<float>("probabilities", {6}),
+            CategoryProbabilities(descriptor));
   const H5Reader file(path, kShapeNetFormat);
   EXPECT_EQ(file.ReadScalar<double>("held_out/accuracy"), 0.75);
+  EXPECT_EQ(file.ReadString("precision"), "bf16");
   EXPECT_EQ(file.ReadValues<double>("curve/loss", {2}), curve.loss);
   EXPECT_THAT(CurveCsv(curve), HasSubstr("\n2,0.1,1.2,0.4,0.5\n"));
+}
+
+TEST(LikelyCategories, NamesTheLikeliestFirstAndLeavesOutTheRest) {
+  EXPECT_EQ(LikelyCategories({{}, {0, 0, 0, 0, 20, 0}}), "train 1.000");
+  EXPECT_EQ(LikelyCategories({{}, {0, 20, 0, 0, 0, 21}}), "vehicle 0.731, animal 0.269");
 }
 
 TEST(ShapeFiles, RefuseOtherFormatsAndWeightsThatAreNotFinite) {
@@ -189,7 +232,7 @@ TEST(ShapeFiles, RefuseOtherFormatsAndWeightsThatAreNotFinite) {
   ShapeNet net(TinySizes());
   const ShapeTrial nothing = {{}, {}, std::vector<std::int32_t>(36, 0)};
   net.params[3] = NAN;
-  WriteShapeNet(path, net, {{}, nothing}, {"test", "", 1, {}});
+  WriteShapeNet(path, net, {{}, nothing, "f32"}, {"test", "", 1, {}});
   EXPECT_THAT([&] { ReadShapeNet(path); },
               ThrowsMessage<Error>(
                   AllOf(HasSubstr(path), HasSubstr("weights/sa1/0/weight"), HasSubstr("finite"))));
