@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/options.h"
 #include "geometry/mesh.h"
@@ -29,6 +30,7 @@ ConvexParts DecomposeConvex(const TriMesh& mesh, const DecomposeOptions& options
 // How well parts stand for a closed mesh.
 struct DecompositionQuality {
   double volume_ratio = 0;     // summed part volume / mesh volume
+  std::vector<double> stick_out;  // of each part: how far its surface gets outside the mesh, m
   double hausdorff_ratio = 0;  // symmetric Hausdorff distance between the mesh's surface and the
                                // surface of the parts' union / diagonal of the mesh's bounding box;
                                // sampled, so a slight underestimate; slits inside the solid

@@ -96,9 +96,8 @@ class Voxeliser {
  public:
   Voxeliser(const TriMesh& mesh, int resolution) : mesh_(mesh), surface_(mesh) {
     const Box3 bounds = BoundsOf(mesh);
-    // A flat box still needs a volume to divide.
-    const Eigen::Vector3d size = bounds.Size().cwiseMax(1e-3 * bounds.Size().maxCoeff());
-    solid_.spacing = std::cbrt(size.prod() / resolution);
+    const Eigen::Vector3d size = bounds.Size();
+    solid_.spacing = VoxelSize(bounds, resolution);
     for (int k = 0; k < 3; ++k) {
       // More than a voxel to spare, by a fraction that keeps faces of boxes off the voxels' faces.
       solid_.dims[k] = static_cast<int>(std::ceil(size[k] / solid_.spacing + 1.3));
@@ -209,6 +208,12 @@ class Voxeliser {
 };
 
 }  // namespace
+
+double VoxelSize(const Box3& bounds, int resolution) {
+  // A flat box still needs a volume to divide.
+  const Eigen::Vector3d size = bounds.Size().cwiseMax(1e-3 * bounds.Size().maxCoeff());
+  return std::cbrt(size.prod() / resolution);
+}
 
 VoxelSolid Voxelise(const TriMesh& mesh, int resolution) {
   DEX_CHECK(!mesh.triangles.empty());

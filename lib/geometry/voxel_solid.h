@@ -32,6 +32,9 @@ struct VoxelSolid {
   }
 };
 
+// Side of the voxels when `resolution` of them fill a box; m.
+double VoxelSize(const Box3& bounds, int resolution);
+
 // About `resolution` voxels in the bounding box. The mesh has no open edges and is wound outward;
 // shells may overlap. The volume of each voxel follows from its surface pieces by integrating along
 // z columns, which is the inside fill as well.
