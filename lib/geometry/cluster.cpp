@@ -107,8 +107,7 @@ struct Extremes {
       return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
     });
     distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-    const auto hull = SummariseHull(distinct);
-    return hull ? hull->volume : 0;
+    return dexremoe::HullVolume(distinct);
   }
 };
 
@@ -266,9 +265,8 @@ void MergeClusters(std::size_t most, double free_volume, double reach,
   };
   const auto cost = [&](const Cluster& a, const Cluster& b) {
     if (!Near(a, b, reach)) return std::numeric_limits<double>::infinity();
-    const auto hull = SummariseHull(corners(a, b));
-    const double before = a.hull_volume + b.hull_volume - SharedVolume(a.hull, b.hull);
-    return (hull ? hull->volume : 0) - before;
+    return HullVolume(corners(a, b)) - a.hull_volume - b.hull_volume +
+           SharedVolume(a.hull, b.hull);
   };
   std::vector<std::vector<double>> costs(clusters.size());
   for (std::size_t i = 0; i < clusters.size(); ++i)
