@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "base/check.h"
+#include "geometry/growing_hull.h"
 #include "geometry/hull.h"
 
 namespace dexremoe {
@@ -62,53 +63,66 @@ Points ClusterPoints(const VoxelSolid& solid, const std::vector<int>& voxels, in
 }
 
 // Directions in which the extreme points of a layer are kept while planes are compared: the axes
-// and diagonals of the grid and a Fibonacci sphere.
-const Points& Directions() {
-  static const Points directions = [] {
-    Points result;
+// and diagonals of the grid and a Fibonacci sphere. One row of numbers per coordinate.
+constexpr int kSpread = 70, kDirections = 26 + kSpread;
+using PerDirection = Eigen::Array<float, kDirections, 1>;
+
+const std::array<PerDirection, 3>& Directions() {
+  static const std::array<PerDirection, 3> directions = [] {
+    std::array<PerDirection, 3> rows;
+    int count = 0;
+    const auto add = [&](const Eigen::Vector3d& direction) {
+      for (int k = 0; k < 3; ++k) rows[k][count] = static_cast<float>(direction[k]);
+      ++count;
+    };
     for (int code = 0; code < 27; ++code)
       if (code != 13)
-        result.push_back(
-            Eigen::Vector3d(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).normalized());
-    constexpr int kSpread = 70;
+        add(Eigen::Vector3d(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).normalized());
     for (int i = 0; i < kSpread; ++i) {
       const double z = 1 - (2 * i + 1.0) / kSpread, r = std::sqrt(1 - z * z);
       const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
-      result.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
+      add({r * std::cos(turn), r * std::sin(turn), z});
     }
-    return result;
+    return rows;
   }();
   return directions;
 }
 
 // The extreme point of a set in each direction.
-struct Extremes {
-  Points points = Points(Directions().size());
-  std::vector<double> reach = std::vector<double>(Directions().size(), -INFINITY);
-
-  void Add(const Eigen::Vector3d& p) {
-    for (std::size_t d = 0; d < reach.size(); ++d) {
-      const double along = Directions()[d].dot(p);
-      if (along <= reach[d]) continue;
-      reach[d] = along;
-      points[d] = p;
+class Extremes {
+ public:
+  // Reaches are kept as 32-bit floats, which is enough near the origin.
+  void Add(const Points& points, const Eigen::Vector3d& origin) {
+    const auto& [x, y, z] = Directions();
+    for (const Eigen::Vector3d& point : points) {
+      const Eigen::Vector3f p = (point - origin).cast<float>();
+      const PerDirection along = x * p.x() + y * p.y() + z * p.z();
+      if ((along > reach_).any()) Take(along, [&](int) { return point; });
     }
   }
   void Add(const Extremes& other) {
-    for (std::size_t d = 0; d < reach.size(); ++d)
-      if (other.reach[d] > reach[d]) {
-        reach[d] = other.reach[d];
-        points[d] = other.points[d];
-      }
+    Take(other.reach_, [&](int d) { return other.points_[d]; });
   }
   double HullVolume() const {
-    Points distinct = points;
+    Points distinct = points_;
     std::sort(distinct.begin(), distinct.end(), [](const auto& p, const auto& q) {
       return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
     });
     distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
     return dexremoe::HullVolume(distinct);
   }
+
+ private:
+  template <typename PointIn>
+  void Take(const PerDirection& along, const PointIn& point_in) {
+    for (int d = 0; d < kDirections; ++d) {
+      if (along[d] <= reach_[d]) continue;
+      reach_[d] = along[d];
+      points_[d] = point_in(d);
+    }
+  }
+  Points points_ = Points(kDirections);
+  PerDirection reach_ = PerDirection::Constant(-INFINITY);
 };
 
 // A cluster seen along one axis: what lies below and from each layer boundary on.
@@ -125,7 +139,7 @@ class Profile {
     for (const int i : cluster.voxels) members[solid.voxels[i].cell[axis] - low].push_back(i);
     for (const std::vector<int>& layer : members) {
       Extremes extremes;
-      for (const Eigen::Vector3d& p : ClusterPoints(solid, layer, axis, true)) extremes.Add(p);
+      extremes.Add(ClusterPoints(solid, layer, axis, true), solid.origin);
       below_.push_back(extremes);
       above_.push_back(std::move(extremes));
       solid_below_.push_back(0);
@@ -218,7 +232,10 @@ bool Near(const Cluster& a, const Cluster& b, double reach) {
 }  // namespace
 
 TriMesh SolidHull(const Points& points, double thickness) {
-  if (auto hull = ConvexHull(points, {0, thickness})) return *hull;
+  GrowingHull growing(points);
+  growing.Grow();
+  if (growing.solid()) return growing.Mesh();
+  if (auto sheet = ConvexHull(points, {0, thickness})) return *sheet;
   Points padded;
   for (const Eigen::Vector3d& p : points)
     for (int corner = 0; corner < 8; ++corner)
