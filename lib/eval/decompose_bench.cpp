@@ -148,7 +148,8 @@ std::string DecomposeCsv(const std::vector<DecomposedMesh>& meshes) {
     csv.Row({m.set, m.name, fmt::format("{}", m.source_triangles), fmt::format("{}", m.triangles),
              fmt::format("{:.3f}", m.repair_seconds), fmt::format("{:.3f}", m.seconds),
              fmt::format("{}", m.parts), fmt::format("{:.4f}", m.quality.volume_ratio),
-             fmt::format("{:.5f}", m.quality.hausdorff_ratio), fmt::format("{:.2f}", m.StickOut())});
+             fmt::format("{:.5f}", m.quality.hausdorff_ratio),
+             fmt::format("{:.2f}", m.StickOut())});
   return csv.text();
 }
 

@@ -4,9 +4,7 @@
 #include <climits>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
-#include <optional>
 #include <unordered_map>
 
 #include "base/check.h"
@@ -64,7 +62,7 @@ Points ClusterPoints(const VoxelSolid& solid, const std::vector<int>& voxels, in
 
 // Directions in which the extreme points of a layer are kept while planes are compared: the axes
 // and diagonals of the grid and a Fibonacci sphere. One row of numbers per coordinate.
-constexpr int kSpread = 70, kDirections = 26 + kSpread;
+constexpr int kSpread = 38, kDirections = 26 + kSpread;
 using PerDirection = Eigen::Array<float, kDirections, 1>;
 
 const std::array<PerDirection, 3>& Directions() {
@@ -223,12 +221,6 @@ std::vector<std::vector<int>> Connected(const VoxelSolid& solid, const std::vect
   return groups;
 }
 
-bool Near(const Cluster& a, const Cluster& b, double reach) {
-  const Box3 box_a = BoundsOf(a.hull), box_b = BoundsOf(b.hull);
-  return (box_a.min.array() <= box_b.max.array() + reach).all() &&
-         (box_b.min.array() <= box_a.max.array() + reach).all();
-}
-
 }  // namespace
 
 TriMesh SolidHull(const Points& points, double thickness) {
@@ -247,17 +239,19 @@ TriMesh SolidHull(const Points& points, double thickness) {
   return *hull;
 }
 
-Cluster MakeCluster(const VoxelSolid& solid, std::vector<int> voxels) {
+Cluster MakeCluster(const VoxelSolid& solid, const Concavity& concavity, std::vector<int> voxels) {
   DEX_CHECK(!voxels.empty());
   Cluster cluster;
   cluster.voxels = std::move(voxels);
   for (const int i : cluster.voxels) cluster.solid += solid.voxels[i].volume;
-  cluster.hull = SolidHull(ClusterPoints(solid, cluster.voxels, 2, false), solid.spacing / 10);
+  cluster.hull = SolidHull(ClusterPoints(solid, cluster.voxels, 2, true), solid.spacing / 10);
   cluster.hull_volume = MassPropertiesOf(cluster.hull).volume;
+  cluster.concavity = concavity.CostOf(cluster.hull, cluster.voxels);
   return cluster;
 }
 
-std::vector<Cluster> CutBest(const VoxelSolid& solid, const Cluster& cluster, double balance) {
+std::vector<Cluster> CutBest(const VoxelSolid& solid, const Concavity& concavity,
+                             const Cluster& cluster, double balance) {
   std::vector<Profile> profiles;
   for (int axis = 0; axis < 3; ++axis) profiles.emplace_back(solid, cluster, axis);
   const Plane plane = FindBestPlane(profiles, balance);
@@ -269,44 +263,12 @@ std::vector<Cluster> CutBest(const VoxelSolid& solid, const Cluster& cluster, do
   std::vector<Cluster> pieces;
   for (const std::vector<int>& side : sides)
     for (std::vector<int>& group : Connected(solid, side))
-      pieces.push_back(MakeCluster(solid, std::move(group)));
+      pieces.push_back(MakeCluster(solid, concavity, std::move(group)));
   return pieces;
 }
 
-void MergeClusters(std::size_t most, double free_volume, double reach,
-                   std::vector<Cluster>& clusters) {
-  const auto corners = [](const Cluster& a, const Cluster& b) {
-    Points points = a.hull.vertices;
-    points.insert(points.end(), b.hull.vertices.begin(), b.hull.vertices.end());
-    return points;
-  };
-  const auto cost = [&](const Cluster& a, const Cluster& b) {
-    if (!Near(a, b, reach)) return std::numeric_limits<double>::infinity();
-    return HullVolume(corners(a, b)) - a.hull_volume - b.hull_volume +
-           SharedVolume(a.hull, b.hull);
-  };
-  std::vector<std::vector<double>> costs(clusters.size());
-  for (std::size_t i = 0; i < clusters.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) costs[i].push_back(cost(clusters[i], clusters[j]));
-  while (clusters.size() > 1) {
-    std::size_t a = 1, b = 0;
-    for (std::size_t i = 1; i < clusters.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (costs[i][j] < costs[a][b]) a = i, b = j;
-    if (clusters.size() <= most && costs[a][b] > free_volume) break;
-    clusters[b].hull = SolidHull(corners(clusters[a], clusters[b]), reach / 10);
-    clusters[b].hull_volume = MassPropertiesOf(clusters[b].hull).volume;
-    clusters[b].solid += clusters[a].solid;
-    clusters[b].voxels.insert(clusters[b].voxels.end(), clusters[a].voxels.begin(),
-                              clusters[a].voxels.end());
-    clusters.erase(clusters.begin() + static_cast<std::ptrdiff_t>(a));
-    costs.erase(costs.begin() + static_cast<std::ptrdiff_t>(a));
-    for (std::size_t i = a; i < costs.size(); ++i)
-      costs[i].erase(costs[i].begin() + static_cast<std::ptrdiff_t>(a));
-    for (std::size_t j = 0; j < b; ++j) costs[b][j] = cost(clusters[b], clusters[j]);
-    for (std::size_t i = b + 1; i < clusters.size(); ++i)
-      costs[i][b] = cost(clusters[i], clusters[b]);
-  }
+TriMesh ExactHull(const VoxelSolid& solid, const Cluster& cluster) {
+  return SolidHull(ClusterPoints(solid, cluster.voxels, 2, false), solid.spacing / 10);
 }
 
 }  // namespace dexremoe

@@ -24,7 +24,8 @@ std::optional<TriMesh> ConvexHull(const std::vector<Eigen::Vector3d>& points,
                                   const HullOptions& options = {});
 
 // Indices of up to four points that span the largest simplex a greedy search finds; fewer than four
-// when the points lie in a plane (three), on a line (two) or at one place (one). At least one point.
+// when the points lie in a plane (three), on a line (two) or at one place (one). At least one
+// point.
 std::vector<int> SpanningSimplex(const std::vector<Eigen::Vector3d>& points);
 
 // Triangles over `points` with only the points that they use.

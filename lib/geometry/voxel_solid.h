@@ -15,6 +15,7 @@ struct Voxel {
   // points [first, first + count); the extreme ones in 26 directions come first. An inner voxel has
   // none.
   int first = 0, count = 0, extreme = 0;
+  Eigen::Vector3d on_surface = Eigen::Vector3d::Zero();  // some point of those pieces; m
   bool inner() const { return count == 0; }
 };
 
