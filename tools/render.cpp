@@ -1,5 +1,4 @@
 // Pictures and films: episodes, strips over time, the hand, objects, convex parts.
-
 #include <algorithm>
 
 #include "base/error.h"
@@ -37,7 +36,7 @@ struct RenderTool {
 void RenderTool::Register(Options& options) {
   options.Add("kind", &kind, "what to draw")
       .Required()
-      .Choices({"episode", "strip", "video", "objects", "parts", "hand"});
+      .Choices({"episode", "strip", "video", "objects", "parts", "hand", "hand_parts"});
   options.Add("out", &out, "PNG file; MP4 for a video").Required().NotStored();
   options.Add("objects", &objects, "objects.csv (all kinds but hand)");
   options.Add("trace", &trace, "recorded episodes (episode, strip, video)");
@@ -109,7 +108,8 @@ void RenderTool::RunEpisode() const {
 void RenderTool::RunHand() const {
   const HandModel model = LoadHand(hand);
   Renderer renderer(render);
-  WritePng(out, HandPicture(renderer, model, q, colliders, Width(640), height));
+  WritePng(out, kind == "hand" ? HandPicture(renderer, model, q, colliders, Width(640), height)
+                               : HandPartsPicture(renderer, model, q, Width(1200), height));
 }
 
 void RenderTool::RunSheet() const {
@@ -143,7 +143,7 @@ int main(int argc, char** argv) {
   RenderTool tool;
   tool.Register(options);
   return RunTool(options, argc, argv, [&] {
-    if (tool.kind == "hand") return tool.RunHand();
+    if (tool.kind.starts_with("hand")) return tool.RunHand();
     if (tool.kind == "objects" || tool.kind == "parts") return tool.RunSheet();
     tool.RunEpisode();
   });
