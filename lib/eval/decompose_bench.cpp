@@ -90,8 +90,8 @@ std::vector<Measurement> Summary(const std::vector<DecomposedMesh>& meshes) {
     Summarise("parts", set, members, parts, summary);
     Summarise("repair", set, members, repair, summary);
   }
-  // Quoted: V-HACD 4.1 with 16 hulls, 64 vertices and 100 k voxels on closed versions of 150 meshes
-  // from public collections (Google Scanned Objects and others).
+  // Quoted: V-HACD 4.1 with 16 hulls, 64 vertices and 100 k voxels on closed versions of 150 real
+  // meshes.
   const std::string peer = "V-HACD 4.1 (quoted)";
   summary.push_back({"parts", peer, "meshes", 150, 0, ""});
   summary.push_back({"parts", peer, "volume ratio", 1.52, 2, "[1.27, 2.42]"});
@@ -134,7 +134,7 @@ std::string DecomposeMarkdown(const std::vector<DecomposedMesh>& meshes,
       "distance between the mesh and the surface of the union of its parts, over the diagonal of "
       "the bounding box. Stick-out: how far the worst part gets outside the mesh. Time: from "
       "closed mesh to parts. V-HACD's figures (16 hulls, 64 vertices, 100 k voxels, closed "
-      "versions of 150 meshes of vehicles, animals, heads, shoes and trains) are quoted, not "
+      "versions of 150 real meshes) are quoted, not "
       "measured in this run.\n\n## Repair before it\n\n{}",
       MachineText(), options.decompose.parts, options.decompose.hull_vertices,
       options.decompose.resolution, MarkdownOf(summary, "parts", "set"),
