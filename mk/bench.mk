@@ -20,11 +20,15 @@ $(BUILD)/bench/torch_update: $(TORCH_OBJECTS)
 	@echo '  LINK $@'
 	@$(CXX) $(LDFLAGS) $^ -ltorch_cpu -lc10 -ldl -o $@
 
+# Meshes whose decomposition is measured: the built-in ones, and OBJECTS where it names a folder.
+BENCH_MESHES := meshes/builtin$(if $(filter-out builtin,$(OBJECTS)),$(comma)$(OBJECTS))
+
 .PHONY: bench
-bench: deps  ## measure speed and accuracy of the physics, speed of learning; writes results/bench/ (install libtorch-dev libopenblas0-openmp to compare with libtorch)
+bench: deps  ## measure decomposition, speed and accuracy of the physics, speed of learning; writes results/bench/ (install libtorch-dev libopenblas0-openmp to compare with libtorch)
 	+@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench/bench $(TORCH_UPDATE) \
-	  $(addprefix $(BUILD)/bin/,bench_sim validate_sim bench_learn)
+	  $(addprefix $(BUILD)/bin/,bench_decompose bench_sim validate_sim bench_learn make_objects) meshes/builtin/manifest.csv
 	@mkdir -p results/bench
+	$(BUILD)/bin/bench_decompose --meshes=$(BENCH_MESHES) --workers=$(WORKERS) --out=results/bench/decompose.md --csv=results/bench/decompose.csv
 	$(BUILD)/bin/bench_sim --workers=$(WORKERS) --out=results/bench/sim.md --csv=results/bench/sim.csv
 	$(BUILD)/bin/validate_sim --workers=$(WORKERS) --out=results/bench/validate_sim.md --csv=results/bench/validate_sim.csv
 	@$(if $(TORCH_UPDATE),,echo 'Learning is not compared with libtorch: no $(TORCH_INCLUDE) (Debian package libtorch-dev).')
@@ -33,7 +37,7 @@ bench: deps  ## measure speed and accuracy of the physics, speed of learning; wr
 	  --benchmark_out=results/bench/bench.json --benchmark_out_format=json \
 	  --benchmark_counters_tabular=true | tee results/bench/bench.txt.tmp
 	@mv results/bench/bench.txt.tmp results/bench/bench.txt
-	@echo 'Written: results/bench/sim.md, validate_sim.md, learn.md, bench.txt, bench.json'
+	@echo 'Written: results/bench/decompose.md, sim.md, validate_sim.md, learn.md, bench.txt, bench.json'
 
 # PointNet++ at the paper's sizes, trained on the built-in training objects and tried on the others and
 # on real meshes.

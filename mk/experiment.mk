@@ -58,7 +58,7 @@ dataset: deps  ## draw all objects: training left of a line, out of distribution
 
 TABLES  := $(OUT)/tables/table1.md $(OUT)/tables/categories.md
 FIGURES := $(addprefix $(OUT)/figures/,curves.png objects.png parts.png per_object.png tsne.png \
-  hand.png strip.png episode.mp4)
+  hand.png hand_parts.png strip.png episode.mp4)
 PRODUCTS := $(TABLES) $(FIGURES)
 
 .PHONY: experiment
@@ -238,6 +238,8 @@ $(OUT)/gallery/index.txt: $(OUT)/objects.mk $(call OBJECT_FILES,parts) $(call OB
 	$(BIN)/render --kind=gallery --objects=$(OUT)/objects.csv --out=$(@D)
 $(OUT)/figures/hand.png: $(HAND) $(OUT)/settings.txt | $(BIN)/render
 	$(BIN)/render --kind=hand --hand=$(HAND) --out=$@
+$(OUT)/figures/hand_parts.png: $(HAND) $(OUT)/settings.txt | $(BIN)/render
+	$(BIN)/render --kind=hand_parts --hand=$(HAND) --out=$@
 $(OUT)/figures/strip.png: $(OUT)/eval/gate.h5 | $(BIN)/render
 	$(BIN)/render --kind=strip --hand=$(HAND) --trace=$(OUT)/trace/gate.h5 --objects=$(OUT)/objects.csv --out=$@
 $(OUT)/figures/episode.mp4: $(OUT)/eval/gate.h5 | $(BIN)/render
@@ -251,7 +253,7 @@ LEARN_COLUMNS := successes_per_600,drop_rate,mean_angle,goal_angle
 publish:  ## copy the tables and figures of a finished run to results/tables and paper_figs
 	@mkdir -p results/tables paper_figs
 	cp $(foreach t,table1 categories,$(addprefix $(OUT)/tables/$(t).,md csv tex)) results/tables/
-	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png curves.png per_object.png tsne.png strip.png) paper_figs/
+	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png hand_parts.png curves.png per_object.png tsne.png strip.png) paper_figs/
 	@for run in cube six; do for table in results/$$run*/tables/learned.md; do [ ! -f $$table ] || \
 	  cp $$table results/tables/learned_$$(basename $$(dirname $$(dirname $$table))).md; done; done
 	@runs=$$(ls -d results/{cube,six,desk*}/curves/base.csv 2>/dev/null | cut -d/ -f2 || true); \

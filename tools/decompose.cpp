@@ -8,6 +8,22 @@
 #include "base/options.h"
 #include "geometry/mesh_io.h"
 #include "geometry/object_files.h"
+#include "geometry/voxel_solid.h"
+
+namespace {
+
+// Parts that bridge a hollow by more than voxels explain are named.
+void PrintStickOut(const std::vector<double>& stick_out, double voxel) {
+  constexpr double kExplained = 1.5;  // voxels
+  std::printf("stick-out: %.2f mm at most\n",
+              1e3 * *std::max_element(stick_out.begin(), stick_out.end()));
+  for (std::size_t i = 0; i < stick_out.size(); ++i)
+    if (stick_out[i] > kExplained * voxel)
+      std::printf("stick-out of part %zu: %.2f mm, %.1f voxels\n", i, 1e3 * stick_out[i],
+                  stick_out[i] / voxel);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace dexremoe;
@@ -29,6 +45,7 @@ int main(int argc, char** argv) {
     const DecompositionQuality quality = QualityOf(object.mesh, result.parts);
     result.volume_ratio = quality.volume_ratio;
     result.hausdorff_ratio = quality.hausdorff_ratio;
+    result.stick_out = quality.stick_out;
     if (!export_path.empty()) SaveParts(export_path, result.parts);
     WriteParts(out, result, MakeProvenance(options, 0, {mesh_path}));
 
@@ -39,6 +56,7 @@ int main(int argc, char** argv) {
     std::printf("parts: %zu (at most %zu vertices each)\n", result.parts.size(), most_vertices);
     std::printf("volume ratio: %.4f\n", quality.volume_ratio);
     std::printf("hausdorff ratio: %.4f\n", quality.hausdorff_ratio);
+    PrintStickOut(quality.stick_out, VoxelSize(BoundsOf(object.mesh), decompose.resolution));
     std::printf("time: %.2f s\n", elapsed.count());
   });
 }

@@ -1,5 +1,4 @@
 // Pictures and films: episodes, strips over time, the hand, objects, convex parts.
-
 #include <algorithm>
 
 #include "base/error.h"
@@ -40,7 +39,7 @@ void RenderTool::Register(Options& options) {
   options.Add("kind", &kind, "what to draw; sources and dataset: meshes as they come")
       .Required()
       .Choices({"episode", "strip", "video", "object", "objects", "sources", "dataset", "parts",
-                "clouds", "gallery", "hand"});
+                "clouds", "gallery", "hand", "hand_parts"});
   options.Add("out", &out, "PNG file; MP4 for a video; folder for a gallery")
       .Required()
       .NotStored();

@@ -20,6 +20,7 @@ void Print(const TriMesh& source, const ObjectMesh& object) {
   std::printf("triangles: %zu (%zu in the file)\n", object.mesh.triangles.size(),
               source.triangles.size());
   std::printf("repair: %s\n", object.repair.c_str());
+  std::printf("source distance: %.2f mm (Hausdorff)\n", 1e3 * object.source_distance);
   std::printf("size: %.2f x %.2f x %.2f mm\n", size.x(), size.y(), size.z());
   std::printf("volume: %.4f cm^3\n", 1e6 * object.volume);
   std::printf("mass: %g kg\n", object.mass);
@@ -38,14 +39,16 @@ int main(int argc, char** argv) {
       "scale_mesh --mesh=meshes/builtin/airplane/airliner.ply --out=mesh.h5");
   std::string mesh_path, out, name, category, export_path;
   ScaleOptions scale;
+  LoadLimits limits;
   options.Add("mesh", &mesh_path, "mesh file: obj, stl, ply, off, dae, fbx, gltf, glb").Required();
   options.Add("out", &out, "object file to write").Required().NotStored();
   options.Add("name", &name, "object name (default: the file's name)");
   options.Add("category", &category, "object category (default: the file's folder)");
   options.Add("export", &export_path, "also write the mesh as .ply, .obj or .stl").NotStored();
   scale.Register(options);
+  limits.Register(options);
   return RunTool(options, argc, argv, [&] {
-    const TriMesh source = LoadMesh(mesh_path);
+    const TriMesh source = LoadMesh(mesh_path, limits);
     ObjectMesh object = MakeObject(source, scale, mesh_path);
     const std::filesystem::path path = std::filesystem::absolute(mesh_path);
     object.name = name.empty() ? path.stem().string() : name;

@@ -4,12 +4,11 @@
 #include <climits>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
-#include <optional>
 #include <unordered_map>
 
 #include "base/check.h"
+#include "geometry/growing_hull.h"
 #include "geometry/hull.h"
 
 namespace dexremoe {
@@ -62,54 +61,66 @@ Points ClusterPoints(const VoxelSolid& solid, const std::vector<int>& voxels, in
 }
 
 // Directions in which the extreme points of a layer are kept while planes are compared: the axes
-// and diagonals of the grid and a Fibonacci sphere.
-const Points& Directions() {
-  static const Points directions = [] {
-    Points result;
+// and diagonals of the grid and a Fibonacci sphere. One row of numbers per coordinate.
+constexpr int kSpread = 38, kDirections = 26 + kSpread;
+using PerDirection = Eigen::Array<float, kDirections, 1>;
+
+const std::array<PerDirection, 3>& Directions() {
+  static const std::array<PerDirection, 3> directions = [] {
+    std::array<PerDirection, 3> rows;
+    int count = 0;
+    const auto add = [&](const Eigen::Vector3d& direction) {
+      for (int k = 0; k < 3; ++k) rows[k][count] = static_cast<float>(direction[k]);
+      ++count;
+    };
     for (int code = 0; code < 27; ++code)
       if (code != 13)
-        result.push_back(
-            Eigen::Vector3d(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).normalized());
-    constexpr int kSpread = 70;
+        add(Eigen::Vector3d(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).normalized());
     for (int i = 0; i < kSpread; ++i) {
       const double z = 1 - (2 * i + 1.0) / kSpread, r = std::sqrt(1 - z * z);
       const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
-      result.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
+      add({r * std::cos(turn), r * std::sin(turn), z});
     }
-    return result;
+    return rows;
   }();
   return directions;
 }
 
 // The extreme point of a set in each direction.
-struct Extremes {
-  Points points = Points(Directions().size());
-  std::vector<double> reach = std::vector<double>(Directions().size(), -INFINITY);
-
-  void Add(const Eigen::Vector3d& p) {
-    for (std::size_t d = 0; d < reach.size(); ++d) {
-      const double along = Directions()[d].dot(p);
-      if (along <= reach[d]) continue;
-      reach[d] = along;
-      points[d] = p;
+class Extremes {
+ public:
+  // Reaches are kept as 32-bit floats, which is enough near the origin.
+  void Add(const Points& points, const Eigen::Vector3d& origin) {
+    const auto& [x, y, z] = Directions();
+    for (const Eigen::Vector3d& point : points) {
+      const Eigen::Vector3f p = (point - origin).cast<float>();
+      const PerDirection along = x * p.x() + y * p.y() + z * p.z();
+      if ((along > reach_).any()) Take(along, [&](int) { return point; });
     }
   }
   void Add(const Extremes& other) {
-    for (std::size_t d = 0; d < reach.size(); ++d)
-      if (other.reach[d] > reach[d]) {
-        reach[d] = other.reach[d];
-        points[d] = other.points[d];
-      }
+    Take(other.reach_, [&](int d) { return other.points_[d]; });
   }
   double HullVolume() const {
-    Points distinct = points;
+    Points distinct = points_;
     std::sort(distinct.begin(), distinct.end(), [](const auto& p, const auto& q) {
       return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
     });
     distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-    const auto hull = SummariseHull(distinct);
-    return hull ? hull->volume : 0;
+    return dexremoe::HullVolume(distinct);
   }
+
+ private:
+  template <typename PointIn>
+  void Take(const PerDirection& along, const PointIn& point_in) {
+    for (int d = 0; d < kDirections; ++d) {
+      if (along[d] <= reach_[d]) continue;
+      reach_[d] = along[d];
+      points_[d] = point_in(d);
+    }
+  }
+  Points points_ = Points(kDirections);
+  PerDirection reach_ = PerDirection::Constant(-INFINITY);
 };
 
 // A cluster seen along one axis: what lies below and from each layer boundary on.
@@ -126,7 +137,7 @@ class Profile {
     for (const int i : cluster.voxels) members[solid.voxels[i].cell[axis] - low].push_back(i);
     for (const std::vector<int>& layer : members) {
       Extremes extremes;
-      for (const Eigen::Vector3d& p : ClusterPoints(solid, layer, axis, true)) extremes.Add(p);
+      extremes.Add(ClusterPoints(solid, layer, axis, true), solid.origin);
       below_.push_back(extremes);
       above_.push_back(std::move(extremes));
       solid_below_.push_back(0);
@@ -210,16 +221,13 @@ std::vector<std::vector<int>> Connected(const VoxelSolid& solid, const std::vect
   return groups;
 }
 
-bool Near(const Cluster& a, const Cluster& b, double reach) {
-  const Box3 box_a = BoundsOf(a.hull), box_b = BoundsOf(b.hull);
-  return (box_a.min.array() <= box_b.max.array() + reach).all() &&
-         (box_b.min.array() <= box_a.max.array() + reach).all();
-}
-
 }  // namespace
 
 TriMesh SolidHull(const Points& points, double thickness) {
-  if (auto hull = ConvexHull(points, {0, thickness})) return *hull;
+  GrowingHull growing(points);
+  growing.Grow();
+  if (growing.solid()) return growing.Mesh();
+  if (auto sheet = ConvexHull(points, {0, thickness})) return *sheet;
   Points padded;
   for (const Eigen::Vector3d& p : points)
     for (int corner = 0; corner < 8; ++corner)
@@ -231,17 +239,19 @@ TriMesh SolidHull(const Points& points, double thickness) {
   return *hull;
 }
 
-Cluster MakeCluster(const VoxelSolid& solid, std::vector<int> voxels) {
+Cluster MakeCluster(const VoxelSolid& solid, const Concavity& concavity, std::vector<int> voxels) {
   DEX_CHECK(!voxels.empty());
   Cluster cluster;
   cluster.voxels = std::move(voxels);
   for (const int i : cluster.voxels) cluster.solid += solid.voxels[i].volume;
-  cluster.hull = SolidHull(ClusterPoints(solid, cluster.voxels, 2, false), solid.spacing / 10);
+  cluster.hull = SolidHull(ClusterPoints(solid, cluster.voxels, 2, true), solid.spacing / 10);
   cluster.hull_volume = MassPropertiesOf(cluster.hull).volume;
+  cluster.concavity = concavity.CostOf(cluster.hull, cluster.voxels);
   return cluster;
 }
 
-std::vector<Cluster> CutBest(const VoxelSolid& solid, const Cluster& cluster, double balance) {
+std::vector<Cluster> CutBest(const VoxelSolid& solid, const Concavity& concavity,
+                             const Cluster& cluster, double balance) {
   std::vector<Profile> profiles;
   for (int axis = 0; axis < 3; ++axis) profiles.emplace_back(solid, cluster, axis);
   const Plane plane = FindBestPlane(profiles, balance);
@@ -253,45 +263,12 @@ std::vector<Cluster> CutBest(const VoxelSolid& solid, const Cluster& cluster, do
   std::vector<Cluster> pieces;
   for (const std::vector<int>& side : sides)
     for (std::vector<int>& group : Connected(solid, side))
-      pieces.push_back(MakeCluster(solid, std::move(group)));
+      pieces.push_back(MakeCluster(solid, concavity, std::move(group)));
   return pieces;
 }
 
-void MergeClusters(std::size_t most, double free_volume, double reach,
-                   std::vector<Cluster>& clusters) {
-  const auto corners = [](const Cluster& a, const Cluster& b) {
-    Points points = a.hull.vertices;
-    points.insert(points.end(), b.hull.vertices.begin(), b.hull.vertices.end());
-    return points;
-  };
-  const auto cost = [&](const Cluster& a, const Cluster& b) {
-    if (!Near(a, b, reach)) return std::numeric_limits<double>::infinity();
-    const auto hull = SummariseHull(corners(a, b));
-    const double before = a.hull_volume + b.hull_volume - SharedVolume(a.hull, b.hull);
-    return (hull ? hull->volume : 0) - before;
-  };
-  std::vector<std::vector<double>> costs(clusters.size());
-  for (std::size_t i = 0; i < clusters.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) costs[i].push_back(cost(clusters[i], clusters[j]));
-  while (clusters.size() > 1) {
-    std::size_t a = 1, b = 0;
-    for (std::size_t i = 1; i < clusters.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (costs[i][j] < costs[a][b]) a = i, b = j;
-    if (clusters.size() <= most && costs[a][b] > free_volume) break;
-    clusters[b].hull = SolidHull(corners(clusters[a], clusters[b]), reach / 10);
-    clusters[b].hull_volume = MassPropertiesOf(clusters[b].hull).volume;
-    clusters[b].solid += clusters[a].solid;
-    clusters[b].voxels.insert(clusters[b].voxels.end(), clusters[a].voxels.begin(),
-                              clusters[a].voxels.end());
-    clusters.erase(clusters.begin() + static_cast<std::ptrdiff_t>(a));
-    costs.erase(costs.begin() + static_cast<std::ptrdiff_t>(a));
-    for (std::size_t i = a; i < costs.size(); ++i)
-      costs[i].erase(costs[i].begin() + static_cast<std::ptrdiff_t>(a));
-    for (std::size_t j = 0; j < b; ++j) costs[b][j] = cost(clusters[b], clusters[j]);
-    for (std::size_t i = b + 1; i < clusters.size(); ++i)
-      costs[i][b] = cost(clusters[i], clusters[b]);
-  }
+TriMesh ExactHull(const VoxelSolid& solid, const Cluster& cluster) {
+  return SolidHull(ClusterPoints(solid, cluster.voxels, 2, false), solid.spacing / 10);
 }
 
 }  // namespace dexremoe

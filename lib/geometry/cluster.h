@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "geometry/concavity.h"
 #include "geometry/mesh.h"
 #include "geometry/voxel_solid.h"
 
@@ -13,25 +14,31 @@ struct Cluster {
   double solid = 0;         // volume of the solid within, m^3
   TriMesh hull;             // of the solid within
   double hull_volume = 0;   // m^3
-  // What a single convex part would add to the solid.
-  double Excess() const { return hull_volume - solid; }
+  double concavity = 0;     // what it costs, m^3 (Concavity::CostOf)
+  // What is wrong with a single convex part in its place.
+  double Cost() const { return hull_volume - solid + concavity; }
 };
 
 // Hull that always exists: points in a plane, on a line or at one place are given a thickness.
 TriMesh SolidHull(const std::vector<Eigen::Vector3d>& points, double thickness);
 
-Cluster MakeCluster(const VoxelSolid& solid, std::vector<int> voxels);
+Cluster MakeCluster(const VoxelSolid& solid, const Concavity& concavity, std::vector<int> voxels);
+
+// Hull of all points of the cluster's solid; Cluster::hull is that of the extreme ones.
+TriMesh ExactHull(const VoxelSolid& solid, const Cluster& cluster);
 
 // Cuts at the best plane between voxel layers along x, y or z, then separates what is no longer
 // connected. One cluster comes back when there is nothing to cut.
 // Score of a plane (V-HACD): summed excess of both hulls + balance * |difference of volumes|.
 // NOTE(paper): V-HACD's third term, which favours cuts across an axis of revolution, is left out.
-std::vector<Cluster> CutBest(const VoxelSolid& solid, const Cluster& cluster, double balance);
+std::vector<Cluster> CutBest(const VoxelSolid& solid, const Concavity& concavity,
+                             const Cluster& cluster, double balance);
 
-// Joins the pair whose common hull adds least to the union of the two hulls, until at most `most`
-// are left and no joint is nearly free (adds less than `free_volume`). Pairs are tried when their
-// bounding boxes are within `reach` of each other.
-void MergeClusters(std::size_t most, double free_volume, double reach,
+// Joins the pair whose common hull costs least, by what it adds to the union of the two hulls and
+// to the greater of their concavities, until at most `most` are left and no joint is nearly free
+// (costs less than `free_cost`, m^3). Pairs are tried when their bounding boxes are within `reach`
+// of each other.
+void MergeClusters(std::size_t most, double free_cost, double reach, const Concavity& concavity,
                    std::vector<Cluster>& clusters);
 
 }  // namespace dexremoe

@@ -61,10 +61,14 @@ class UnionSurface {
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const int count = static_cast<int>(std::ceil(kSamples * areas[i] / area));
       for (const Eigen::Vector3d& p : SpreadOverSurface(parts[i], count))
-        if (!Buried(p, i)) samples_.push_back(p);
+        if (!Buried(p, i)) {
+          samples_.push_back(p);
+          part_of_sample_.push_back(i);
+        }
     }
   }
   const std::vector<Eigen::Vector3d>& samples() const { return samples_; }
+  std::size_t PartOf(std::size_t sample) const { return part_of_sample_[sample]; }
 
   // Exact where the nearest point of some part is on the surface of the union (always for points
   // outside), else to the nearest sample.
@@ -101,6 +105,7 @@ class UnionSurface {
   std::vector<TriangleBvh> trees_;
   std::vector<PartTester> testers_;
   std::vector<Eigen::Vector3d> samples_;
+  std::vector<std::size_t> part_of_sample_;
 };
 
 }  // namespace
@@ -114,8 +119,14 @@ DecompositionQuality QualityOf(const TriMesh& mesh, const ConvexParts& parts) {
   const TriangleBvh surface(mesh);
   const UnionSurface hulls(parts, surface, 1e-6 * diagonal, kJoint * diagonal);
   double distance = 0;
-  for (const Eigen::Vector3d& p : hulls.samples())
-    distance = std::max(distance, surface.Closest(p).distance);
+  quality.stick_out.assign(parts.size(), 0);
+  for (std::size_t i = 0; i < hulls.samples().size(); ++i) {
+    const Eigen::Vector3d& p = hulls.samples()[i];
+    const double off = surface.Closest(p).distance;
+    distance = std::max(distance, off);
+    double& stick_out = quality.stick_out[hulls.PartOf(i)];
+    if (off > stick_out && surface.WindingNumber(p) < 0.5) stick_out = off;
+  }
   for (const Eigen::Vector3d& p : SpreadOverSurface(mesh, kSamples))
     distance = std::max(distance, hulls.Distance(p));
   quality.hausdorff_ratio = distance / diagonal;

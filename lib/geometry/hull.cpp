@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "geometry/growing_hull.h"
 
 extern "C" {
 #include <libqhull_r/libqhull_r.h>
@@ -62,47 +63,6 @@ class Qhull {
   int status_;
 };
 
-// Indices of up to four points that span the largest simplex a greedy search finds; fewer than four
-// when the points lie in a plane (three), on a line (two) or at one place (one).
-std::vector<int> Simplex(const Points& points) {
-  const auto farthest = [&](const auto& distance) {
-    int best = 0;
-    for (int i = 1; i < static_cast<int>(points.size()); ++i)
-      if (distance(points[i]) > distance(points[best])) best = i;
-    return best;
-  };
-  std::vector<int> chosen = {farthest([](const auto& p) { return p.x(); })};
-  const Eigen::Vector3d a = points[chosen[0]];
-  chosen.push_back(farthest([&](const auto& p) { return (p - a).norm(); }));
-  const Eigen::Vector3d ab = points[chosen[1]] - a;
-  const double flat = kFlatRatio * ab.norm();
-  if (!(flat > 0)) return {chosen[0]};
-  chosen.push_back(farthest([&](const auto& p) { return ab.cross(p - a).norm(); }));
-  const Eigen::Vector3d normal = ab.cross(points[chosen[2]] - a);
-  if (normal.norm() / ab.norm() <= flat) return {chosen[0], chosen[1]};
-  chosen.push_back(farthest([&](const auto& p) { return std::abs(normal.dot(p - a)); }));
-  if (std::abs(normal.dot(points[chosen[3]] - a)) / normal.norm() <= flat) chosen.pop_back();
-  return chosen;
-}
-
-// The triangles with only the points that they use.
-TriMesh Compact(const Points& points, const std::vector<std::array<int, 3>>& triangles) {
-  TriMesh mesh;
-  std::vector<int> renumbered(points.size(), -1);
-  for (std::array<int, 3> triangle : triangles) {
-    for (int& index : triangle) {
-      int& to = renumbered[index];
-      if (to < 0) {
-        to = static_cast<int>(mesh.vertices.size());
-        mesh.vertices.push_back(points[index]);
-      }
-      index = to;
-    }
-    mesh.triangles.push_back(triangle);
-  }
-  return mesh;
-}
-
 // Every half-edge has exactly one opposite, and Euler's formula holds as for a sphere.
 bool IsClosedSphere(const TriMesh& mesh) {
   if (mesh.triangles.size() != 2 * mesh.vertices.size() - 4) return false;
@@ -121,7 +81,7 @@ std::optional<TriMesh> FullHull(const Points& points) {
   // Qt triangulates facets that are not simplices; in rare cases that leaves overlapping slivers,
   // and then the input is joggled.
   for (const char* command : {"qhull Qt Pp", "qhull QJ Pp"}) {
-    TriMesh hull = Compact(points, Qhull(points, command).Triangles());
+    TriMesh hull = Compacted(points, Qhull(points, command).Triangles());
     if (hull.triangles.size() >= 4 && IsClosedSphere(hull) && MassPropertiesOf(hull).volume > 0)
       return hull;
   }
@@ -129,26 +89,9 @@ std::optional<TriMesh> FullHull(const Points& points) {
 }
 
 std::optional<TriMesh> LimitedHull(const TriMesh& full, int max_vertices) {
-  const Points& points = full.vertices;
-  Points chosen;
-  for (const int i : Simplex(points)) chosen.push_back(points[i]);
-  std::optional<TriMesh> hull = FullHull(chosen);
-  while (hull && static_cast<int>(chosen.size()) < max_vertices) {
-    int best = -1;
-    double best_distance = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double distance = DistanceOutside(*hull, points[i]);
-      if (distance <= best_distance) continue;
-      best_distance = distance;
-      best = static_cast<int>(i);
-    }
-    if (best < 0) break;
-    chosen.push_back(points[best]);
-    std::optional<TriMesh> grown = FullHull(chosen);
-    if (!grown) break;
-    hull = std::move(grown);
-  }
-  return hull;
+  GrowingHull hull(full.vertices);
+  hull.Grow(max_vertices);
+  return hull.solid() ? FullHull(hull.Mesh().vertices) : std::nullopt;
 }
 
 // Flat input with a thickness: the points moved both ways along the direction they lack.
@@ -169,7 +112,7 @@ Points Thickened(const Points& points, const std::vector<int>& simplex, double t
 std::optional<TriMesh> ConvexHull(const Points& points, const HullOptions& options) {
   DEX_CHECK(options.max_vertices == 0 || options.max_vertices >= 4);
   if (points.size() < 3) return std::nullopt;
-  const std::vector<int> simplex = Simplex(points);
+  const std::vector<int> simplex = SpanningSimplex(points);
   if (simplex.size() < 4) {
     if (!(options.thicken > 0) || simplex.size() < 3) return std::nullopt;
     return ConvexHull(Thickened(points, simplex, options.thicken), {options.max_vertices, 0});
@@ -181,14 +124,52 @@ std::optional<TriMesh> ConvexHull(const Points& points, const HullOptions& optio
   return LimitedHull(*hull, options.max_vertices);
 }
 
-std::optional<HullSummary> SummariseHull(const Points& points) {
-  if (points.size() < 4 || Simplex(points).size() < 4) return std::nullopt;
-  TriMesh hull = Compact(points, Qhull(points, "qhull Qt Pp").Triangles());
-  if (hull.triangles.size() < 4) return std::nullopt;
-  HullSummary summary;
-  summary.volume = MassPropertiesOf(hull).volume;
-  summary.vertices = std::move(hull.vertices);
-  return summary;
+std::vector<int> SpanningSimplex(const Points& points) {
+  const auto farthest = [&](const auto& distance) {
+    int best = 0;
+    double most = -INFINITY;
+    for (int i = 0; i < static_cast<int>(points.size()); ++i)
+      if (const double d = distance(points[i]); d > most) {
+        most = d;
+        best = i;
+      }
+    return best;
+  };
+  std::vector<int> chosen = {farthest([](const auto& p) { return p.x(); })};
+  const Eigen::Vector3d a = points[chosen[0]];
+  chosen.push_back(farthest([&](const auto& p) { return (p - a).squaredNorm(); }));
+  const Eigen::Vector3d ab = points[chosen[1]] - a;
+  const double flat = kFlatRatio * ab.norm();
+  if (!(flat > 0)) return {chosen[0]};
+  chosen.push_back(farthest([&](const auto& p) { return ab.cross(p - a).squaredNorm(); }));
+  const Eigen::Vector3d normal = ab.cross(points[chosen[2]] - a);
+  if (normal.norm() / ab.norm() <= flat) return {chosen[0], chosen[1]};
+  chosen.push_back(farthest([&](const auto& p) { return std::abs(normal.dot(p - a)); }));
+  if (std::abs(normal.dot(points[chosen[3]] - a)) / normal.norm() <= flat) chosen.pop_back();
+  return chosen;
+}
+
+TriMesh Compacted(const Points& points, const std::vector<std::array<int, 3>>& triangles) {
+  TriMesh mesh;
+  std::vector<int> renumbered(points.size(), -1);
+  for (std::array<int, 3> triangle : triangles) {
+    for (int& index : triangle) {
+      int& to = renumbered[index];
+      if (to < 0) {
+        to = static_cast<int>(mesh.vertices.size());
+        mesh.vertices.push_back(points[index]);
+      }
+      index = to;
+    }
+    mesh.triangles.push_back(triangle);
+  }
+  return mesh;
+}
+
+double HullVolume(const Points& points) {
+  GrowingHull hull(points);
+  hull.Grow();
+  return hull.Volume();
 }
 
 double DistanceOutside(const TriMesh& hull, const Eigen::Vector3d& point) {

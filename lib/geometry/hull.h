@@ -1,6 +1,7 @@
 // Convex hulls through qhull (Barber, Dobkin, Huhdanpaa 1996).
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -22,12 +23,17 @@ inline constexpr double kFlatRatio = 1e-6;
 std::optional<TriMesh> ConvexHull(const std::vector<Eigen::Vector3d>& points,
                                   const HullOptions& options = {});
 
-// Corners and volume of the hull without its faces: much quicker, for searches that try many hulls.
-struct HullSummary {
-  std::vector<Eigen::Vector3d> vertices;
-  double volume = 0;  // m^3
-};
-std::optional<HullSummary> SummariseHull(const std::vector<Eigen::Vector3d>& points);
+// Indices of up to four points that span the largest simplex a greedy search finds; fewer than four
+// when the points lie in a plane (three), on a line (two) or at one place (one). At least one
+// point.
+std::vector<int> SpanningSimplex(const std::vector<Eigen::Vector3d>& points);
+
+// Triangles over `points` with only the points that they use.
+TriMesh Compacted(const std::vector<Eigen::Vector3d>& points,
+                  const std::vector<std::array<int, 3>>& triangles);
+
+// Volume of the convex hull, m^3, by GrowingHull; 0 when flat.
+double HullVolume(const std::vector<Eigen::Vector3d>& points);
 
 // Largest distance that `point` lies outside a face plane of `hull`; negative inside.
 double DistanceOutside(const TriMesh& hull, const Eigen::Vector3d& point);

@@ -1,11 +1,11 @@
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include <assimp/Importer.hpp>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 
+#include "base/check.h"
+#include "base/confined.h"
 #include "base/error.h"
+#include "geometry/mesh_import.h"
 #include "geometry/mesh_io.h"
 #include "geometry/ply.h"
 #include "geometry/repair.h"
@@ -32,88 +32,75 @@ std::size_t PromisedBytes(const std::string& extension, const std::string& bytes
   return word;
 }
 
-Eigen::Matrix4d ToEigen(const aiMatrix4x4& m) {
-  Eigen::Matrix4d result;
-  result << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2,
-      m.d3, m.d4;
-  return result;
+std::string Flat(const TriMesh& mesh) {
+  const std::size_t counts[2] = {mesh.vertices.size(), mesh.triangles.size()};
+  std::string bytes(reinterpret_cast<const char*>(counts), sizeof counts);
+  bytes.append(reinterpret_cast<const char*>(mesh.vertices.data()),
+               counts[0] * sizeof(mesh.vertices[0]));
+  bytes.append(reinterpret_cast<const char*>(mesh.triangles.data()),
+               counts[1] * sizeof(mesh.triangles[0]));
+  return bytes;
 }
 
-void AppendMesh(const std::string& path, const aiMesh& source, const Eigen::Matrix4d& transform,
-                TriMesh& mesh) {
-  const int first = static_cast<int>(mesh.vertices.size());
-  const bool mirrored = transform.topLeftCorner<3, 3>().determinant() < 0;
-  for (unsigned i = 0; i < source.mNumVertices; ++i) {
-    const aiVector3D& v = source.mVertices[i];
-    const Eigen::Vector3d p = (transform * Eigen::Vector4d(v.x, v.y, v.z, 1)).head<3>();
-    if (!p.allFinite())
-      Fail("{}: vertex {}: expected finite coordinates, found ({}, {}, {})", path, i, v.x, v.y,
-           v.z);
-    mesh.vertices.push_back(p);
-  }
-  for (unsigned i = 0; i < source.mNumFaces; ++i) {
-    const aiFace& face = source.mFaces[i];
-    if (face.mNumIndices != 3) continue;  // points and lines
-    std::array<int, 3> triangle;
-    for (int k = 0; k < 3; ++k) triangle[k] = first + static_cast<int>(face.mIndices[k]);
-    if (mirrored) std::swap(triangle[1], triangle[2]);
-    mesh.triangles.push_back(triangle);
-  }
+TriMesh FromFlat(const std::string& bytes) {
+  std::size_t counts[2];
+  TriMesh mesh;
+  DEX_CHECK_GE(bytes.size(), sizeof counts);
+  std::memcpy(counts, bytes.data(), sizeof counts);
+  const std::size_t vertex_bytes = counts[0] * sizeof(mesh.vertices[0]),
+                    triangle_bytes = counts[1] * sizeof(mesh.triangles[0]);
+  DEX_CHECK_EQ(bytes.size(), sizeof counts + vertex_bytes + triangle_bytes);
+  mesh.vertices.resize(counts[0]);
+  mesh.triangles.resize(counts[1]);
+  std::memcpy(mesh.vertices.front().data(), bytes.data() + sizeof counts, vertex_bytes);
+  std::memcpy(mesh.triangles.data(), bytes.data() + sizeof counts + vertex_bytes, triangle_bytes);
+  return mesh;
 }
 
-void AppendNode(const std::string& path, const aiScene& scene, const aiNode& node,
-                const Eigen::Matrix4d& parent, TriMesh& mesh) {
-  const Eigen::Matrix4d transform = parent * ToEigen(node.mTransformation);
-  for (unsigned i = 0; i < node.mNumMeshes; ++i)
-    AppendMesh(path, *scene.mMeshes[node.mMeshes[i]], transform, mesh);
-  for (unsigned i = 0; i < node.mNumChildren; ++i)
-    AppendNode(path, scene, *node.mChildren[i], transform, mesh);
+// Devices and pipes may never end.
+void CheckFile(const std::string& path, double max_megabytes) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    Fail("{}: expected a mesh file, found something else", path);
+  const auto bytes = static_cast<double>(std::filesystem::file_size(path, error));
+  if (!error && bytes > 1e6 * max_megabytes)
+    Fail("{}: expected a mesh file of at most {} MB, found {:.0f} MB", path, max_megabytes,
+         bytes / 1e6);
 }
 
-// Assimp's own triangulation trusts the indices, and a damaged file would crash it.
-void CheckIndices(const std::string& path, const aiScene& scene) {
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene.mMeshes[m];
-    for (unsigned i = 0; i < mesh.mNumFaces; ++i)
-      for (unsigned k = 0; k < mesh.mFaces[i].mNumIndices; ++k)
-        if (mesh.mFaces[i].mIndices[k] >= mesh.mNumVertices)
-          Fail("{}: face {}: expected vertex indices below {}, found {} (truncated or damaged?)",
-               path, i, mesh.mNumVertices, mesh.mFaces[i].mIndices[k]);
-  }
-}
-
-std::string OneLine(std::string text) {
-  for (char& c : text)
-    if (c == '\n' || c == '\r') c = ' ';
-  return text;
-}
-
-}  // namespace
-
-TriMesh LoadMesh(const std::string& path) {
+TriMesh Read(const std::string& path, const LoadLimits& limits) {
+  CheckFile(path, limits.megabytes);
   const std::string bytes = ReadFile(path);
   if (bytes.empty()) Fail("{}: expected a mesh, found an empty file", path);
   const std::string extension = LowerExtension(path);
   // Assimp 5.2 misreads binary PLY whose first data byte looks like a line end.
-  if (extension == ".ply") return Weld(ParsePly(path, bytes), 0);
+  if (extension == ".ply") return ParsePly(path, bytes);
   const std::size_t promised = PromisedBytes(extension, bytes);
   if (bytes.size() < promised)
     Fail("{}: file is truncated: expected {} bytes, found {}", path, promised, bytes.size());
-
-  Assimp::Importer importer;
-  if (!importer.IsExtensionSupported(extension))
+  if (!IsImportable(extension))
     Fail("{}: expected a mesh file (obj, stl, ply, off, dae, fbx, gltf, glb), found '{}'", path,
          extension);
-  const aiScene* scene = importer.ReadFile(path, 0);
-  if (scene == nullptr || scene->mRootNode == nullptr)
-    Fail("{}: not a readable mesh: {}", path, OneLine(importer.GetErrorString()));
-  CheckIndices(path, *scene);
-  scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
-  if (scene == nullptr)
-    Fail("{}: not a readable mesh: {}", path, OneLine(importer.GetErrorString()));
-  TriMesh mesh;
-  AppendNode(path, *scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), mesh);
-  if (mesh.triangles.empty()) Fail("{}: expected at least one face, found none", path);
+  return FromFlat(RunConfined(path + ": reading it", limits.confined,
+                              [&] { return Flat(ImportMesh(path, limits.triangles)); }));
+}
+
+}  // namespace
+
+void LoadLimits::Register(Options& options) {
+  options.Add("load.megabytes", &megabytes, "largest mesh file, MB").Range(0, 1e6);
+  options.Add("load.triangles", &triangles, "most triangles of a file").Range(1, 1e9);
+  options.Add("load.seconds", &confined.seconds, "processor time for reading a file, s")
+      .Range(1, 1e6);
+  options.Add("load.memory", &confined.memory, "memory for reading a file, GiB").Range(0.01, 1e3);
+}
+
+TriMesh LoadMesh(const std::string& path, const LoadLimits& limits) {
+  const TriMesh mesh = Read(path, limits);
+  if (mesh.triangles.size() > static_cast<std::size_t>(limits.triangles))
+    Fail("{}: expected at most {} triangles, found {}", path, limits.triangles,
+         mesh.triangles.size());
   return Weld(mesh, 0);
 }
 

@@ -72,6 +72,8 @@ void WriteObjectMesh(const std::string& path, const ObjectMesh& object,
   file.WriteString("name", object.name, {"1", "", "object name"});
   file.WriteString("category", object.category, {"1", "", "object category"});
   file.WriteString("repair", object.repair, {"1", "", "what was done to make one closed shell"});
+  file.WriteScalar("source_distance", object.source_distance,
+                   {"m", "", "symmetric Hausdorff distance to the source's surface"});
   file.Commit();
 }
 
@@ -87,6 +89,8 @@ ObjectMesh ReadObjectMesh(const std::string& path) {
   object.name = file.ReadString("name");
   object.category = file.ReadString("category");
   object.repair = file.ReadString("repair");
+  if (file.Has("source_distance"))  // files of earlier versions lack it
+    object.source_distance = file.ReadScalar<double>("source_distance");
   if (!(object.mass > 0)) Fail("{}: mass: expected more than 0 kg, found {}", path, object.mass);
   if (!(object.volume > 0))
     Fail("{}: volume: expected more than 0 m^3, found {}", path, object.volume);
@@ -116,6 +120,9 @@ void WriteParts(const std::string& path, const ObjectParts& object, const Proven
                    {"1", "", "summed volume of the parts over the volume of the mesh"});
   file.WriteScalar("hausdorff_ratio", object.hausdorff_ratio,
                    {"1", "", "symmetric Hausdorff distance of the surfaces over the diagonal"});
+  if (!object.stick_out.empty())
+    file.Write("stick_out", object.stick_out, {static_cast<std::int64_t>(object.parts.size())},
+               {"m", "part", "how far the part gets outside the mesh"});
   file.Commit();
 }
 
@@ -137,6 +144,9 @@ ObjectParts ReadParts(const std::string& path) {
         FromFlat(path, rows(vertices, vertex_offset, i), rows(triangles, triangle_offset, i)));
   object.volume_ratio = file.ReadScalar<double>("volume_ratio");
   object.hausdorff_ratio = file.ReadScalar<double>("hausdorff_ratio");
+  if (file.Has("stick_out"))  // files of earlier versions lack it
+    object.stick_out =
+        file.ReadValues<double>("stick_out", {static_cast<std::int64_t>(object.parts.size())});
   return object;
 }
 

@@ -19,15 +19,17 @@ struct ObjectMesh {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  // about O; kg m^2
   std::string name;
   std::string category;
-  std::string repair;                                              // what was done to close it
+  std::string repair;          // what was done to close it
+  double source_distance = 0;  // symmetric Hausdorff distance to the source's surface, m
   Eigen::Matrix4d source_to_object = Eigen::Matrix4d::Identity();  // source file units to O
 };
 
 // The convex pieces that physics collides with, and how well they fit.
 struct ObjectParts {
-  ConvexParts parts;           // in O, m; each closed and convex
-  double volume_ratio = 0;     // summed hull volume / mesh volume
-  double hausdorff_ratio = 0;  // symmetric Hausdorff distance / diagonal of the bounding box
+  ConvexParts parts;              // in O, m; each closed and convex
+  double volume_ratio = 0;        // summed hull volume / mesh volume
+  std::vector<double> stick_out;  // of each part, or empty: how far it gets outside the mesh, m
+  double hausdorff_ratio = 0;     // symmetric Hausdorff distance / diagonal of the bounding box
 };
 
 void WriteObjectMesh(const std::string& path, const ObjectMesh& object,

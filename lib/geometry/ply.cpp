@@ -137,6 +137,15 @@ class Values {
     }
     return NAN;
   }
+  // The length of a list. No more than the bytes left: a damaged file would take forever.
+  int NextCount(Type type) {
+    const double count = Next(type);
+    if (!(count >= 0))
+      Fail("{}: row {} of '{}': expected the length of a list, found {}", path_, row_,
+           element_->name, count);
+    if (count > static_cast<double>(end_ - at_)) Truncated();
+    return static_cast<int>(count);
+  }
   // Where the reading stands, for messages.
   void SetPlace(const Element& element, std::size_t row) {
     element_ = &element;
@@ -183,7 +192,7 @@ class Values {
 void ReadVertex(const Element& element, Values& values, TriMesh& mesh) {
   Eigen::Vector3d p = Eigen::Vector3d::Constant(NAN);
   for (const Property& property : element.properties) {
-    const int repeats = property.list ? static_cast<int>(values.Next(property.count_type)) : 1;
+    const int repeats = property.list ? values.NextCount(property.count_type) : 1;
     for (int i = 0; i < repeats; ++i) {
       const double value = values.Next(property.type);
       if (!property.list && property.name.size() == 1 && property.name[0] >= 'x' &&
@@ -196,14 +205,14 @@ void ReadVertex(const Element& element, Values& values, TriMesh& mesh) {
 
 void ReadFace(const Element& element, Values& values, TriMesh& mesh) {
   for (const Property& property : element.properties) {
-    const int count = property.list ? static_cast<int>(values.Next(property.count_type)) : 1;
+    const int count = property.list ? values.NextCount(property.count_type) : 1;
     const bool corners =
         property.list && (property.name == "vertex_indices" || property.name == "vertex_index");
     std::array<int, 3> fan{};
     for (int i = 0; i < count; ++i) {
       // Out of range for an int only where it is out of range for the mesh.
-      const int index =
-          static_cast<int>(std::clamp(values.Next(property.type), -1.0, 2147483647.0));
+      const double value = values.Next(property.type);
+      const int index = value >= 0 ? static_cast<int>(std::min(value, 2147483647.0)) : -1;
       if (!corners) continue;
       if (i < 2) {
         fan[i] = index;
@@ -235,7 +244,10 @@ TriMesh ParsePly(const std::string& path, const std::string& bytes) {
   const Header header = ReadHeader(path, bytes);
   Values values(path, bytes, header);
   TriMesh mesh;
-  for (const Element& element : header.elements)
+  for (const Element& element : header.elements) {
+    if (element.count > bytes.size())  // a row takes a byte or more
+      Fail("{}: file is truncated: expected {} rows of '{}' in {} bytes", path, element.count,
+           element.name, bytes.size());
     for (std::size_t row = 0; row < element.count; ++row) {
       values.SetPlace(element, row);
       if (element.name == "face") {
@@ -247,6 +259,7 @@ TriMesh ParsePly(const std::string& path, const std::string& bytes) {
         ReadVertex(element, values, skipped);
       }
     }
+  }
   CheckMesh(path, mesh);
   return mesh;
 }

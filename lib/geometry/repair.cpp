@@ -13,7 +13,11 @@ namespace dexremoe {
 namespace {
 
 constexpr int kSamples = 4000;        // points that test whether the surface survived
-constexpr double kOffsetCells = 0.8;  // thickening of sheets that would vanish
+constexpr double kOffsetCells = 0.8;  // thickening, on either side, of sheets that would vanish
+constexpr double kPlateCells = 1.75;  // what sheets become: twice that and the rounding of edges
+// A closed shell may cross itself at this share of its surface: so do many good models, at joints.
+constexpr double kFewCrossings = 0.02;
+constexpr int kCrossingSamples = 400;
 
 // Sheets modelled from both sides cancel in the winding number. When most of the mesh is such,
 // one side of each is dropped; where a few triangles meet back to back (two solids that touch),
@@ -75,6 +79,36 @@ double LostSurface(const std::vector<Eigen::Vector3d>& samples, const TriMesh& s
   return static_cast<double>(lost) / static_cast<double>(samples.size());
 }
 
+// Share of a closed shell's surface that does not have the solid on its inner side and nothing on
+// the other.
+double CrossingShare(const TriMesh& mesh) {
+  const TriangleBvh bvh(mesh);
+  const double step = 1e-4 * BoundsOf(mesh).Size().maxCoeff();
+  const std::vector<Eigen::Vector3d> samples = SpreadOverSurface(mesh, kCrossingSamples);
+  int wrong = 0;
+  for (const Eigen::Vector3d& p : samples) {
+    const auto& [a, b, c] = mesh.triangles[bvh.Closest(p).triangle];
+    const Eigen::Vector3d across = step * (mesh.vertices[b] - mesh.vertices[a])
+                                              .cross(mesh.vertices[c] - mesh.vertices[a])
+                                              .stableNormalized();
+    wrong += std::abs(bvh.WindingNumber(p - across) - 1) > 0.4 ||
+             std::abs(bvh.WindingNumber(p + across)) > 0.4;
+  }
+  return static_cast<double>(wrong) / kCrossingSamples;
+}
+
+double SourceDistance(const TriMesh& source, const TriMesh& mesh) {
+  const TriangleBvh from(source), to(mesh);
+  double most = 0;
+  for (const Eigen::Vector3d& p : SpreadOverSurface(mesh, kSamples))
+    most = std::max(most, from.Closest(p).distance);
+  for (const Eigen::Vector3d& p : SpreadOverSurface(source, kSamples)) {
+    const double distance = to.Closest(p).distance;
+    if (distance > most && to.WindingNumber(p) < 0.5) most = distance;
+  }
+  return most;
+}
+
 struct Shell {
   TriMesh mesh;
   Dropped dropped;
@@ -95,12 +129,13 @@ Shell ExtractShell(const TriMesh& source, int resolution, double lost_surface) {
   return shell;
 }
 
-std::string Describe(const Topology& was, const Shell& shell) {
-  std::string text = fmt::format("remeshed: {} shells, {} open edges, {} crowded edges", was.shells,
-                                 was.open_edges, was.crowded_edges);
+std::string Describe(const Topology& was, const std::string& fault, const Shell& shell) {
+  std::string text = fmt::format("remeshed: {} shells, {} open edges, {} crowded edges{}",
+                                 was.shells, was.open_edges, was.crowded_edges, fault);
   if (shell.offset_share > 0)
-    text += fmt::format("; thickened by {:.2g} % of its length (sheets would have vanished)",
-                        100 * shell.offset_share);
+    text += fmt::format(
+        "; thickened, sheets to {:.2g} % of its length at most (they would have vanished)",
+        100 * kPlateCells / kOffsetCells * shell.offset_share);
   const Dropped& dropped = shell.dropped;
   if (dropped.cavities > 0) text += fmt::format("; filled {} cavities", dropped.cavities);
   if (dropped.pieces > 0)
@@ -109,8 +144,8 @@ std::string Describe(const Topology& was, const Shell& shell) {
   return text;
 }
 
-RepairResult Remesh(const TriMesh& mesh, const Topology& was, const RepairOptions& options,
-                    const std::string& label) {
+RepairResult Remesh(const TriMesh& mesh, const Topology& was, const std::string& fault,
+                    const RepairOptions& options, const std::string& label) {
   const TriMesh source = WithConsistentWinding(WithoutDoubleSides(mesh));
   Shell shell = ExtractShell(source, options.resolution, options.lost_surface);
   const auto count = static_cast<double>(shell.mesh.triangles.size());
@@ -123,7 +158,24 @@ RepairResult Remesh(const TriMesh& mesh, const Topology& was, const RepairOption
   SmoothTangentially(2, shell.mesh);
   if (!(MassPropertiesOf(shell.mesh).volume > 0))
     Fail("{}: expected a mesh that encloses a volume, found none after remeshing", label);
-  return {shell.mesh, Describe(was, shell)};
+  return {shell.mesh, Describe(was, fault, shell), SourceDistance(mesh, shell.mesh)};
+}
+
+// A closed mesh of one shell as it is, or with its winding mended; without triangles where that
+// does not make it a solid.
+RepairResult Kept(const TriMesh& welded, const Topology& topology) {
+  if (topology.shells != 1) return {};
+  if (topology.ClosedManifold()) {
+    const double volume = MassPropertiesOf(welded).volume;
+    if (volume > 0) return {welded, "closed as it was"};
+    if (volume < 0) return {WithConsistentWinding(welded), "closed; turned inside out"};
+  }
+  if (topology.open_edges == 0 && topology.crowded_edges == 0 && topology.pinched_vertices == 0) {
+    const TriMesh turned = WithConsistentWinding(welded);
+    if (TopologyOf(turned).ClosedManifold() && MassPropertiesOf(turned).volume > 0)
+      return {turned, fmt::format("closed; winding mended at {} edges", topology.flipped_edges)};
+  }
+  return {};
 }
 
 }  // namespace
@@ -133,21 +185,23 @@ RepairResult MakeClosedShell(const TriMesh& mesh, const RepairOptions& options,
   const double size = BoundsOf(mesh).Size().maxCoeff();
   if (!(size > 0))
     Fail("{}: expected a mesh with an extent, found all vertices at one place", label);
+  if (!std::isfinite(size)) Fail("{}: expected a mesh of finite extent, found {}", label, size);
   // 32-bit coordinates of equal points differ by rounding at most.
   const TriMesh welded = Weld(mesh, 1e-6 * size);
+  if (SpreadOverSurface(welded, 1).empty())
+    Fail("{}: expected faces with an area, found none", label);
   const Topology topology = TopologyOf(welded);
-  if (topology.ClosedManifold() && topology.shells == 1) {
-    const double volume = MassPropertiesOf(welded).volume;
-    if (volume > 0) return {welded, "closed as it was"};
-    if (volume < 0) return {WithConsistentWinding(welded), "closed; turned inside out"};
+  std::string fault;
+  RepairResult kept = Kept(welded, topology);
+  if (!kept.mesh.triangles.empty()) {
+    if (static_cast<int>(welded.triangles.size()) > options.max_closed)
+      fault = fmt::format(", {} triangles", welded.triangles.size());
+    else if (CrossingShare(kept.mesh) > kFewCrossings)
+      fault = ", crosses itself";
+    else
+      return kept;
   }
-  if (topology.open_edges == 0 && topology.crowded_edges == 0 && topology.pinched_vertices == 0 &&
-      topology.shells == 1) {
-    const TriMesh turned = WithConsistentWinding(welded);
-    if (TopologyOf(turned).ClosedManifold() && MassPropertiesOf(turned).volume > 0)
-      return {turned, fmt::format("closed; winding mended at {} edges", topology.flipped_edges)};
-  }
-  return Remesh(welded, topology, options, label);
+  return Remesh(welded, topology, fault, options, label);
 }
 
 }  // namespace dexremoe

@@ -38,6 +38,7 @@ TriMesh WithConsistentWinding(const TriMesh& mesh);
 struct RepairOptions {
   int resolution = 80;        // voxels along the longest side of the distance field
   int max_triangles = 30000;  // a finer shell is made again with fewer voxels
+  int max_closed = 200000;    // a closed mesh with more triangles is remeshed all the same
   // Largest fraction of the source surface that may lie farther than one voxel outside the new
   // shell before the shell is thickened by an offset (thin sheets would vanish).
   double lost_surface = 0.005;
@@ -46,10 +47,16 @@ struct RepairOptions {
 struct RepairResult {
   TriMesh mesh;      // one closed manifold shell, positive volume
   std::string text;  // "closed as it was" or "remeshed: 31 shells, 324 open edges ..."
+  // Symmetric Hausdorff distance between the source's surface and the mesh, in the source's units;
+  // sampled, so a slight underestimate. What the source holds inside the solid does not count: a
+  // solid has no inner surfaces.
+  double source_distance = 0;
 };
 
 // Welds, and remeshes through a distance field signed by winding number where welding is not
-// enough. Throws Error (naming `label`) when nothing with a volume is left.
+// enough: for open, crowded, several or crossing shells. Sheets that a solid cannot have become
+// plates of 1.75 voxels at most, as the text says. Throws Error (naming `label`) when nothing with a
+// volume is left.
 RepairResult MakeClosedShell(const TriMesh& mesh, const RepairOptions& options,
                              const std::string& label);
 

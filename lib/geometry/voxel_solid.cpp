@@ -57,6 +57,8 @@ struct Cut {
   Polygon points;
   double area = 0;    // projected on z = const, upward facing positive; voxel units
   double moment = 0;  // the same times the height above the voxel's floor
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  // of the piece with most corners
+  std::size_t corners = 0;                           // of that piece
 };
 
 void AddPiece(const Polygon& piece, double floor, Cut& cut) {
@@ -67,6 +69,10 @@ void AddPiece(const Polygon& piece, double floor, Cut& cut) {
     cut.moment += area * ((a.z() + b.z() + c.z()) / 3 - floor);
   }
   cut.points.insert(cut.points.end(), piece.begin(), piece.end());
+  if (piece.size() <= cut.corners) return;
+  cut.corners = piece.size();
+  cut.middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : piece) cut.middle += p / static_cast<double>(piece.size());
 }
 
 // Exactly equal points once, then those extreme in one of 26 directions moved to the front.
@@ -79,6 +85,7 @@ int SortOut(Polygon& points) {
   std::vector<char> extreme(points.size(), 0);
   for (int code = 0; code < 27; ++code) {
     const Eigen::Vector3d direction(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
+    if (direction.squaredNorm() == 2) continue;
     std::size_t best = 0;
     for (std::size_t i = 1; i < points.size(); ++i)
       if (direction.dot(points[i]) > direction.dot(points[best])) best = i;
@@ -96,9 +103,8 @@ class Voxeliser {
  public:
   Voxeliser(const TriMesh& mesh, int resolution) : mesh_(mesh), surface_(mesh) {
     const Box3 bounds = BoundsOf(mesh);
-    // A flat box still needs a volume to divide.
-    const Eigen::Vector3d size = bounds.Size().cwiseMax(1e-3 * bounds.Size().maxCoeff());
-    solid_.spacing = std::cbrt(size.prod() / resolution);
+    const Eigen::Vector3d size = bounds.Size();
+    solid_.spacing = VoxelSize(bounds, resolution);
     for (int k = 0; k < 3; ++k) {
       // More than a voxel to spare, by a fraction that keeps faces of boxes off the voxels' faces.
       solid_.dims[k] = static_cast<int>(std::ceil(size[k] / solid_.spacing + 1.3));
@@ -188,6 +194,7 @@ class Voxeliser {
     const int index = cut_of_cell_[Index(voxel.cell)];
     if (index < 0) return;
     Polygon points = std::move(cuts_[index].points);
+    voxel.on_surface = solid_.origin + solid_.spacing * cuts_[index].middle;
     for (int corner = 0; corner < 8; ++corner) {
       const std::array<int, 3> node = {voxel.cell[0] + (corner & 1),
                                        voxel.cell[1] + (corner >> 1 & 1),
@@ -209,6 +216,12 @@ class Voxeliser {
 };
 
 }  // namespace
+
+double VoxelSize(const Box3& bounds, int resolution) {
+  // A flat box still needs a volume to divide.
+  const Eigen::Vector3d size = bounds.Size().cwiseMax(1e-3 * bounds.Size().maxCoeff());
+  return std::cbrt(size.prod() / resolution);
+}
 
 VoxelSolid Voxelise(const TriMesh& mesh, int resolution) {
   DEX_CHECK(!mesh.triangles.empty());

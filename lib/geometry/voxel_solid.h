@@ -15,6 +15,7 @@ struct Voxel {
   // points [first, first + count); the extreme ones in 26 directions come first. An inner voxel has
   // none.
   int first = 0, count = 0, extreme = 0;
+  Eigen::Vector3d on_surface = Eigen::Vector3d::Zero();  // some point of those pieces; m
   bool inner() const { return count == 0; }
 };
 
@@ -31,6 +32,9 @@ struct VoxelSolid {
     return origin + spacing * Eigen::Vector3d(cell[0], cell[1], cell[2]);
   }
 };
+
+// Side of the voxels when `resolution` of them fill a box; m.
+double VoxelSize(const Box3& bounds, int resolution);
 
 // About `resolution` voxels in the bounding box. The mesh has no open edges and is wound outward;
 // shells may overlap. The volume of each voxel follows from its surface pieces by integrating along

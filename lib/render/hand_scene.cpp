@@ -120,15 +120,48 @@ void HandScene::AddParts(const std::vector<Part>& parts, const std::vector<Pose>
     scene.items.push_back({part.mesh, X_WL[part.link] * part.X_LM, 1, part.material});
 }
 
-Image HandPicture(Renderer& renderer, const HandModel& hand, const std::vector<double>& q,
-                  bool colliders, int width, int height) {
+namespace {
+
+void CheckAngles(const HandModel& hand, const std::vector<double>& q) {
   if (int(q.size()) != hand.num_joints())
     Fail("{}: expected {} joint angles, found {}", hand.source, hand.num_joints(), q.size());
+}
+
+Image DrawHand(Renderer& renderer, const Scene& scene, int width, int height) {
+  return renderer.Draw(scene, HandCamera(GoalPlace::kNone, double(width) / height), width, height);
+}
+
+}  // namespace
+
+Image HandPicture(Renderer& renderer, const HandModel& hand, const std::vector<double>& q,
+                  bool colliders, int width, int height) {
+  CheckAngles(hand, q);
   const HandScene items(renderer, hand);
   Scene scene;
   items.Add(q.data(), scene);
   if (colliders) items.AddColliders(q.data(), scene);
-  return renderer.Draw(scene, HandCamera(GoalPlace::kNone, double(width) / height), width, height);
+  return DrawHand(renderer, scene, width, height);
+}
+
+Image HandPartsPicture(Renderer& renderer, const HandModel& hand, const std::vector<double>& q,
+                       int width, int height) {
+  CheckAngles(hand, q);
+  const HandScene items(renderer, hand);
+  Scene parts;
+  items.AddColliders(q.data(), parts);
+  for (std::size_t i = 0; i < parts.items.size(); ++i) {
+    parts.items[i].material.color = palette::Distinct(int(i));
+    parts.items[i].material.opacity = 1;
+  }
+  const int left_width = width / 2, right_width = width - left_width;
+  const Image left = HandPicture(renderer, hand, q, false, left_width, height);
+  const Image right = DrawHand(renderer, parts, right_width, height);
+  Image both(width, height, 255, 255, 255);
+  for (int y = 0; y < height; ++y) {
+    std::copy_n(left.at(0, y), 3 * left_width, both.at(0, y));
+    std::copy_n(right.at(0, y), 3 * right_width, both.at(left_width, y));
+  }
+  return both;
 }
 
 }  // namespace dexremoe

@@ -50,4 +50,9 @@ class HandScene {
 Image HandPicture(Renderer& renderer, const HandModel& hand, const std::vector<double>& q,
                   bool colliders, int width, int height);
 
+// The hand as it looks and, to its right, as the convex parts that it collides with, each in a
+// colour of its own. Throws as HandPicture does.
+Image HandPartsPicture(Renderer& renderer, const HandModel& hand, const std::vector<double>& q,
+                       int width, int height);
+
 }  // namespace dexremoe

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "base/error.h"
 #include "base/random.h"
+#include "geometry/concavity.h"
 #include "geometry/triangle_bvh.h"
 #include "geometry/voxel_solid.h"
 #include "shapes.h"
@@ -110,6 +113,36 @@ TEST(DecomposeConvex, FindsTheArmsOfACross) {
   EXPECT_GT(Covered(mesh, parts, 0.01), 0.99);
 }
 
+TEST(Concavity, IsTheStickOutOfAHullOrTheDepthOfAHollow) {
+  // The L's hull passes between its arms, up to 1 cm from either.
+  const TriMesh elbow = ElbowMesh();
+  const VoxelSolid solid = Voxelise(elbow, 20000);
+  std::vector<int> all(solid.voxels.size());
+  std::iota(all.begin(), all.end(), 0);
+  const Concavity concavity(solid, 0.01, 1e-6);
+  const TriMesh hull = *ConvexHull(elbow.vertices);
+  EXPECT_NEAR(concavity.DistanceOf(hull, all), 0.01, 0.7 * solid.spacing);
+  EXPECT_NEAR(concavity.CostOf(hull, all),
+              1e-6 * std::pow(concavity.DistanceOf(hull, all) / 0.01, 3), 1e-15);
+  const TriMesh bar = BoxMesh({0, 0, 0}, {0.03, 0.01, 0.01});
+  std::vector<int> low;
+  for (const int i : all)
+    if (solid.Corner(solid.voxels[i].cell).z() + solid.spacing < 0.01) low.push_back(i);
+  EXPECT_LT(concavity.DistanceOf(bar, low), 0.7 * solid.spacing);
+}
+
+TEST(DecomposeConvex, ThinGapsCountWhereConcavityWeighs) {
+  // Five blades on a bar: the gaps between them hold little volume.
+  TriMesh comb = BoxMesh({0, 0, 0}, {0.1, 0.02, 0.01});
+  for (int i = 0; i < 5; ++i)
+    comb = Joined(comb, BoxMesh({0.02 * i, 0, 0.005}, {0.02 * i + 0.017, 0.02, 0.04}));
+  DecomposeOptions options;
+  options.volume_error = 0.2;
+  EXPECT_GE(DecomposeConvex(comb, options).size(), 5u);
+  options.concavity = 0;
+  EXPECT_LT(DecomposeConvex(comb, options).size(), 5u);
+}
+
 TEST(DecomposeConvex, FewerPartsFitWorseButStayWithinTheBound) {
   const TriMesh mesh = CrossMesh();
   double previous = 0;
@@ -155,6 +188,8 @@ TEST(QualityOf, SeesABulgeOfKnownSize) {
   const DecompositionQuality quality = QualityOf(box, parts);
   EXPECT_NEAR(quality.volume_ratio, 1.2, 1e-12);
   EXPECT_NEAR(quality.hausdorff_ratio, 0.2 / std::sqrt(3), 1e-6);
+  ASSERT_EQ(quality.stick_out.size(), 1u);
+  EXPECT_NEAR(quality.stick_out[0], 0.2, 1e-9);
 }
 
 TEST(QualityOf, SeesAMissingPiece) {

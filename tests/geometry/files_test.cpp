@@ -168,7 +168,10 @@ TEST_F(Files, ObjectsComeBackBitForBit) {
 }
 
 TEST_F(Files, PartsComeBackBitForBit) {
-  const ObjectParts parts = {{BoxMesh({0, 0, 0}, {1, 1, 1}), SphereMesh(1, 4)}, 1.25, 0.015};
+  const ObjectParts parts = {.parts = {BoxMesh({0, 0, 0}, {1, 1, 1}), SphereMesh(1, 4)},
+                             .volume_ratio = 1.25,
+                             .stick_out = {0.002, 0},
+                             .hausdorff_ratio = 0.015};
   WriteParts(Path("parts.h5"), parts, {"test", "", 0, {}});
   const ObjectParts back = ReadParts(Path("parts.h5"));
   ASSERT_EQ(back.parts.size(), 2u);
@@ -178,6 +181,7 @@ TEST_F(Files, PartsComeBackBitForBit) {
   }
   EXPECT_EQ(back.volume_ratio, 1.25);
   EXPECT_EQ(back.hausdorff_ratio, 0.015);
+  EXPECT_EQ(back.stick_out, parts.stick_out);
   EXPECT_THROW(ReadObjectMesh(Path("parts.h5")), Error);  // another format
 }
 

@@ -101,7 +101,8 @@ TEST(MakeClosedShell, TurnsAnInsideOutMesh) {
 TEST(MakeClosedShell, JoinsOverlappingOpenShells) {
   TriMesh soup = Joined(BoxMesh({0, 0, 0}, {2, 1, 1}), BoxMesh({1.5, 0.2, 0.2}, {3, 0.8, 0.8}));
   soup.triangles.erase(soup.triangles.begin() + 2);  // a hole
-  const RepairResult result = MakeClosedShell(soup, {64, 100000, 0.005}, "soup");
+  const RepairResult result =
+      MakeClosedShell(soup, {.resolution = 64, .max_triangles = 100000}, "soup");
   EXPECT_TRUE(TopologyOf(result.mesh).ClosedManifold());
   EXPECT_EQ(TopologyOf(result.mesh).shells, 1);
   EXPECT_NE(result.text.find("remeshed: 2 shells, 3 open edges"), std::string::npos) << result.text;
@@ -113,7 +114,8 @@ TEST(MakeClosedShell, ThickensASheetThatWouldVanish) {
   TriMesh mesh = BoxMesh({0, 0, 0}, {1, 1, 1});
   mesh.vertices.insert(mesh.vertices.end(), {{0.9, 0.5, 0.1}, {2, 0.5, 0.1}, {2, 0.5, 0.9}});
   mesh.triangles.push_back({8, 9, 10});
-  const RepairResult result = MakeClosedShell(mesh, {64, 100000, 0.005}, "fin");
+  const RepairResult result =
+      MakeClosedShell(mesh, {.resolution = 64, .max_triangles = 100000}, "fin");
   EXPECT_NE(result.text.find("thickened"), std::string::npos) << result.text;
   EXPECT_GT(BoundsOf(result.mesh).max.x(), 1.9);
   EXPECT_TRUE(TopologyOf(result.mesh).ClosedManifold());
@@ -122,7 +124,7 @@ TEST(MakeClosedShell, ThickensASheetThatWouldVanish) {
 TEST(MakeClosedShell, KeepsTheTriangleLimit) {
   TriMesh open = SphereMesh(1, 24);
   open.triangles.pop_back();
-  const RepairResult result = MakeClosedShell(open, {80, 6000, 0.005}, "sphere");
+  const RepairResult result = MakeClosedShell(open, {.max_triangles = 6000}, "sphere");
   EXPECT_LE(result.mesh.triangles.size(), 6000u);
   EXPECT_NEAR(MassPropertiesOf(result.mesh).volume, 4.18, 0.1);
 }

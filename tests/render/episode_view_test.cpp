@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -162,6 +163,22 @@ TEST_F(EpisodeViewTest, TheHandPictureNeedsOneAnglePerJoint) {
   EXPECT_THROW(HandPicture(renderer_, hand_, {0, 0}, false, 64, 48), Error);
   const Image image = HandPicture(renderer_, hand_, {0.3}, false, 64, 48);
   EXPECT_EQ(image.height, 48);
+}
+
+TEST_F(EpisodeViewTest, TheHandStandsBesideItsParts) {
+  EXPECT_THROW(HandPartsPicture(renderer_, hand_, {0, 0}, 128, 48), Error);
+  const Image both = HandPartsPicture(renderer_, hand_, {0.3}, 128, 48);
+  const Image left = HandPicture(renderer_, hand_, {0.3}, false, 64, 48);
+  ASSERT_EQ(both.width, 128);
+  int same = 0, coloured = 0;
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) {
+      same += std::equal(left.at(x, y), left.at(x, y) + 3, both.at(x, y));
+      const auto [low, high] = std::minmax_element(both.at(64 + x, y), both.at(64 + x, y) + 3);
+      coloured += *high - *low > 60;
+    }
+  EXPECT_EQ(same, 64 * 48);
+  EXPECT_GT(coloured, 30);
 }
 
 TEST_F(EpisodeViewTest, SlowTheRealHandIsDrawn) {

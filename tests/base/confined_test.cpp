@@ -1,0 +1,80 @@
+#include "base/confined.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <csignal>
+#include <vector>
+
+#include "base/error.h"
+#include "base/thread_pool.h"
+
+namespace dexremoe {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(RunConfined, HandsBackWhatTheWorkReturns) {
+  const std::string large(10000000, 'x');
+  EXPECT_EQ(RunConfined("work", {}, [&] { return large; }), large);
+  EXPECT_EQ(RunConfined("work", {}, [] { return std::string(); }), "");
+}
+
+TEST(RunConfined, ChangesNothingHere) {
+  int value = 1;
+  RunConfined("work", {}, [&] {
+    value = 2;
+    return std::string();
+  });
+  EXPECT_EQ(value, 1);
+}
+
+TEST(RunConfined, PassesErrorsOn) {
+  EXPECT_THAT([] { RunConfined("work", {}, []() -> std::string { Fail("a.obj: bad"); }); },
+              ThrowsMessage<Error>("a.obj: bad"));
+}
+
+TEST(RunConfined, TurnsACrashIntoAnError) {
+  EXPECT_THAT(
+      [] {
+        RunConfined("work", {}, [] {
+          std::raise(SIGSEGV);
+          return std::string();
+        });
+      },
+      ThrowsMessage<Error>(HasSubstr("work: crashed (signal 11")));
+}
+
+TEST(RunConfined, EndsWorkThatNeverEnds) {
+  EXPECT_THAT(
+      [] {
+        RunConfined("work", {.seconds = 1}, [] {
+          for (std::atomic<int> spin = 0; spin >= 0;) spin = 1 - spin;
+          return std::string();
+        });
+      },
+      ThrowsMessage<Error>(HasSubstr("work: took more than")));
+}
+
+TEST(RunConfined, EndsWorkThatWantsTooMuchMemory) {
+  EXPECT_THAT(
+      [] {
+        RunConfined("work", {.memory = 0.1},
+                    [] { return std::string(std::vector<char>(1 << 30, 'x').data(), 1); });
+      },
+      ThrowsMessage<Error>(HasSubstr("work: needs more than 0.1 GiB")));
+}
+
+TEST(RunConfined, RunsOnSeveralThreadsAtOnce) {
+  ThreadPool pool(4);
+  std::vector<std::string> results(24);
+  pool.ParallelFor(24, [&](int i, int) {
+    results[i] = RunConfined("work", {}, [i] { return std::to_string(i); });
+  });
+  for (int i = 0; i < 24; ++i) EXPECT_EQ(results[i], std::to_string(i));
+}
+
+}  // namespace
+}  // namespace dexremoe
