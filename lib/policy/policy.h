@@ -48,6 +48,12 @@ struct RoutingSums {
   double loss = 0;           // the policy's own losses, weighted as in training
   double entropy = 0;        // nats, of the weights
   std::vector<double> load;  // [experts]: rows weighed by the expert's weight
+  void Add(const RoutingSums& other) {
+    loss += other.loss;
+    entropy += other.entropy;
+    load.resize(other.load.size(), 0.0);
+    for (std::size_t i = 0; i < load.size(); ++i) load[i] += other.load[i];
+  }
 };
 
 template <typename T>

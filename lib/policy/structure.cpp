@@ -45,6 +45,19 @@ PolicyStructure PolicyOptions::Base(int obs_size, int phys_size, int num_actions
   return s;
 }
 
+PolicyStructure PolicyOptions::FromScratch(const PolicyStructure& base,
+                                           const std::string& kind) const {
+  PolicyStructure s = base;
+  s.kind = kind;
+  s.experts = experts;
+  s.gate_input = gate_input;
+  if (kind == "sparse_moe" || kind == "mlore") s.top_k = top_k;
+  if (kind != "mlore") return s;
+  s.ranks = ranks;
+  s.category_rank = category_rank;
+  return s;
+}
+
 PolicyStructure PolicyOptions::Mixture(const PolicyStructure& expert, int experts) const {
   PolicyStructure s = expert;
   s.kind = "soft_mixture";

@@ -72,6 +72,8 @@ struct PolicyOptions {
   void Register(Options& options);
   // The base policy for a task with these sizes.
   PolicyStructure Base(int obs_size, int phys_size, int num_actions) const;
+  // `base` as a mixture of this kind that is trained from scratch.
+  PolicyStructure FromScratch(const PolicyStructure& base, const std::string& kind) const;
   // The mixture of `experts` copies of `expert`.
   PolicyStructure Mixture(const PolicyStructure& expert, int experts) const;
 };

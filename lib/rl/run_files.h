@@ -21,6 +21,9 @@ struct RunPaths {
   std::string tensorboard;  // folder
 };
 
+// Where ADR's ranges over time go: "adr.csv" -> "adr.ranges.csv".
+std::string RangesPath(const std::string& curve);
+
 class RunFiles {
  public:
   // `start` is the state that the training starts from or resumes at; the best file of an earlier
