@@ -36,6 +36,7 @@ include mk/build.mk
 include mk/test.mk
 include mk/bench.mk
 include mk/experiment.mk
+include mk/baselines.mk
 include mk/ablate.mk
 
 .PHONY: help

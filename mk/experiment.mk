@@ -42,9 +42,9 @@ six: deps  ## the same on one mesh of each category of OBJECTS (an hour)
 	$(LEARN) OUT=$(call seeded,six) CONFIG="data/config/desk.toml data/config/six.toml"
 learned: $(OUT)/tables/learned.md $(OUT)/figures/base.png
 
-TABLES  := $(OUT)/tables/table1.md
+TABLES  := $(OUT)/tables/table1.md $(OUT)/tables/methods.md
 FIGURES := $(addprefix $(OUT)/figures/,curves.png objects.png parts.png per_object.png tsne.png \
-  hand.png strip.png episode.mp4)
+  baselines.png adr.png   hand.png strip.png episode.mp4)
 PRODUCTS := $(TABLES) $(FIGURES)
 
 .PHONY: experiment
@@ -131,8 +131,22 @@ $(OUT)/uniform.h5: $(EXPERT_FILES) | $(BIN)/train_gate
 
 # --- Evaluation ---------------------------------------------------------------------------------
 
-METHODS := untrained base uniform gate
-LABELS  := Untrained,Base policy,Uniform average,DexReMoE
+# In the order of the paper's table, with its names; then the controls and ours.
+BASELINES := dr privfeat privshape adr res sparse_moe switch mlore mmoe base_long
+label_dr := DR
+label_privfeat := PrivFeat
+label_privshape := PrivShape
+label_adr := ADR
+label_res := Res
+label_sparse_moe := SparseMoE
+label_switch := Switch
+label_mlore := MLoRE
+label_mmoe := MMoE
+label_base_long := Longer base
+BASELINE_LABELS := $(subst ?,,$(subst $(space)?,$(comma),$(strip $(foreach b,$(BASELINES),?$(label_$(b))))))
+METHODS := untrained base $(BASELINES:%=baseline_%) uniform gate
+LABELS  := Untrained,Base policy,$(BASELINE_LABELS),Uniform average,DexReMoE
+OURS    := untrained base uniform gate
 EVAL_FILES := $(METHODS:%=$(OUT)/eval/%.h5)
 
 $(EVAL_FILES): $(OUT)/eval/%.h5: $(OUT)/%.h5 | $(BIN)/evaluate
@@ -179,8 +193,9 @@ $(OUT)/figures/curves.png: $(OUT)/gate.h5 | $(BIN)/plot
 	  --out=$(basename $@)
 $(OUT)/figures/base.png: $(OUT)/base.h5 | $(BIN)/plot
 	$(BIN)/plot --kind=curves --in=$(OUT)/curves/base.csv --labels="Base" --out=$(basename $@)
-$(OUT)/figures/per_object.png: $(EVAL_FILES) | $(BIN)/plot
-	$(BIN)/plot --kind=bars --in=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" --out=$(basename $@)
+$(OUT)/figures/per_object.png: $(OURS:%=$(OUT)/eval/%.h5) | $(BIN)/plot
+	$(BIN)/plot --kind=bars --in=$(call commas,$^) --labels="Untrained,Base policy,Uniform average,DexReMoE" \
+	  --out=$(basename $@)
 $(OUT)/figures/tsne.png: $(OUT)/tsne.h5 | $(BIN)/plot
 	$(BIN)/plot --kind=tsne --in=$< --out=$(basename $@)
 $(OUT)/figures/objects.png: $(OUT)/objects.mk $(call OBJECT_FILES,mesh) | $(BIN)/render
@@ -201,8 +216,8 @@ LEARN_COLUMNS := successes_per_600,drop_rate,mean_angle,goal_angle
 .PHONY: publish
 publish:  ## copy the tables and figures of a finished run to results/tables and paper_figs
 	@mkdir -p results/tables paper_figs
-	cp $(OUT)/tables/table1.md $(OUT)/tables/table1.csv $(OUT)/tables/table1.tex results/tables/
-	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png curves.png per_object.png tsne.png strip.png) paper_figs/
+	cp $(OUT)/tables/table1.md $(OUT)/tables/table1.csv $(OUT)/tables/table1.tex $(OUT)/tables/methods.md results/tables/
+	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png curves.png per_object.png tsne.png strip.png baselines.png adr.png) paper_figs/
 	@for run in cube six; do for table in results/$$run*/tables/learned.md; do [ ! -f $$table ] || \
 	  cp $$table results/tables/learned_$$(basename $$(dirname $$(dirname $$table))).md; done; done
 	@runs=$$(ls -d results/{cube,six,desk*}/curves/base.csv 2>/dev/null | cut -d/ -f2 || true); \

@@ -4,6 +4,7 @@
 
 #include "nn/kernels.h"
 #include "nn/layers.h"
+#include "policy/router.h"
 
 namespace dexremoe {
 namespace {
@@ -190,6 +191,15 @@ void SoftMixture<T>::Backward(const T* params, const ShapeInputs<Wide<T>>& shape
   // gradient.
   value_.Backward(params, rows.n, pass.value_input, pass.dvalue, pass.dvalue,
                   static_cast<T*>(nullptr), grads, static_cast<T*>(nullptr));
+}
+
+template <typename T>
+void SoftMixture<T>::Balance(const PolicyRows<Wide<T>>& rows, const ShapeInputs<Wide<T>>& shapes,
+                             Workspace<T>& work, Wide<T> /*weight*/, RoutingSums& sums) const {
+  work.Reset();
+  const Pass pass = Carve(shapes.objects, rows.n, work);
+  for (std::int64_t r = 0; r < rows.n; ++r)
+    AddRouting(1, gates(), pass.gate.weights + std::int64_t{rows.object[r]} * gates(), sums);
 }
 
 template <typename T>

@@ -26,6 +26,9 @@ void PolicyOptions::Register(Options& options) {
       .Choices({"full", "cloud", "category"});
   options.Add("policy.gate_uniform", &gate_uniform, "weigh all experts alike instead of gating");
   options.Add("policy.experts", &experts, "experts of a mixture trained from scratch").Range(1, 64);
+  options.Add("policy.shared_width", &shared_width,
+              "width of mmoe's experts; 0: half of policy.hidden")
+      .Range(0, 8192);
   options.Add("policy.top_k", &top_k, "experts that act at a time (sparse_moe, mlore)")
       .Range(1, 64);
   options.Add("policy.ranks", &ranks, "ranks of the routed experts (mlore)").Range(1, 8192);
@@ -52,6 +55,8 @@ PolicyStructure PolicyOptions::FromScratch(const PolicyStructure& base,
   s.experts = experts;
   s.gate_input = gate_input;
   if (kind == "sparse_moe" || kind == "mlore") s.top_k = top_k;
+  if (kind == "mmoe")
+    for (int& width : s.hidden) width = shared_width > 0 ? shared_width : (width + 1) / 2;
   if (kind != "mlore") return s;
   s.ranks = ranks;
   s.category_rank = category_rank;
