@@ -50,12 +50,18 @@ double& Element(const Policy<double>& policy, const std::string& block, std::int
   return params[policy.layout().block(policy.layout().Find(block)).offset + i];
 }
 
+// The base with the widths of SmallRouted.
+PolicyStructure BaseOfRouted() {
+  PolicyStructure s = SmallRouted("actor_critic");
+  s.experts = 0;
+  return s;
+}
+
 const char* const kRouted[] = {"sparse_moe", "switch_moe", "mmoe", "mlore"};
 
 TEST(Mixtures, GradientsMatchCentralDifferences) {
   for (const char* kind : kRouted) {
     SCOPED_TRACE(kind);
-    CheckGradients(SmallRouted(kind));
     CheckGradients(SmallRouted(kind), true);
   }
 }
@@ -64,24 +70,22 @@ TEST(Mixtures, GradientsMatchCentralDifferences) {
 TEST(Mixtures, GradientsOfTheBalanceLossesMatchCentralDifferences) {
   for (const char* kind : kRouted) {
     SCOPED_TRACE(kind);
-    CheckGradients(SmallRouted(kind), false, 300);
-    CheckGradients(SmallRouted(kind), true, 300);
+    for (const bool noise : {false, true}) CheckGradients(SmallRouted(kind), noise, 300);
   }
 }
 
-TEST(Mixtures, GradientsMatchWithOtherNumbersOfExperts) {
+TEST(Mixtures, GradientsMatchWithOtherNumbersOfExpertsAndGateInputs) {
   for (const int k : {1, 3, 4}) {
     PolicyStructure s = SmallRouted("sparse_moe");
     s.top_k = k;
     CheckGradients(s, true, 300);
   }
-  for (const char* input : {"cloud", "category"})
-    for (const char* kind : kRouted) {
-      SCOPED_TRACE(std::string(kind) + " " + input);
-      PolicyStructure s = SmallRouted(kind);
-      s.gate_input = input;
-      CheckGradients(s, true, 300);
-    }
+  for (const char* kind : kRouted) {
+    SCOPED_TRACE(kind);
+    PolicyStructure s = SmallRouted(kind);
+    s.gate_input = "category";
+    CheckGradients(s, true, 300);
+  }
 }
 
 TEST(Mixtures, ResidualGradientsMatchCentralDifferencesAndSpareTheBase) {
@@ -132,7 +136,7 @@ TEST(Mixtures, ResidualFrozenFeaturesChangeNothing) {
 }
 
 TEST(Mixtures, OneExpertIsThatExpert) {
-  const auto base = MakePolicy<double>(SmallBase());
+  const auto base = MakePolicy<double>(BaseOfRouted());
   const std::vector<double> params = RandomParams(*base);
   for (const char* kind : {"sparse_moe", "switch_moe"}) {
     PolicyStructure s = SmallRouted(kind);
@@ -148,7 +152,7 @@ TEST(Mixtures, OneExpertIsThatExpert) {
 
 // MMoE with one expert and equal heads is an actor with that trunk and that head.
 TEST(Mixtures, OneExpertWithEqualHeadsIsTheBase) {
-  const PolicyStructure small = SmallBase();
+  const PolicyStructure small = BaseOfRouted();
   const auto base = MakePolicy<double>(small);
   const std::vector<double> params = RandomParams(*base);
   PolicyStructure s = SmallRouted("mmoe");
@@ -281,7 +285,7 @@ TEST(Mixtures, SwitchBalanceLossIsOneWhenEvenAndTheNumberOfExpertsWhenNot) {
 
 // P(x)_i is the chance of being among the k best when the expert's own noise is drawn anew.
 TEST(Mixtures, LoadEstimateIsTheChanceOfBeingChosen) {
-  constexpr int kExperts = 4, kRows = 1, kDraws = 200000;
+  constexpr int kExperts = 4, kRows = 1, kDraws = 40000;
   ParamLayout layout;
   const NoisyTopK<double> router(layout, 1, kExperts, 2);
   std::vector<double> params = {0.3, -0.2, 0.5, 0.1, 0.2, 0.4, -0.3, 0.1};
@@ -289,7 +293,7 @@ TEST(Mixtures, LoadEstimateIsTheChanceOfBeingChosen) {
   std::vector<double> noise = {0.4, -0.8, 0.1, 0.9}, pass(router.PassSize(kRows)), weights(4);
   std::vector<double> chance(kExperts, 0.0);
   Rng rng(8, Stream::kTest, {});
-  for (int i = 0; i < kExperts; ++i)
+  for (int i = 0; i < kExperts; ++i)  // the expert whose noise is drawn anew
     for (int draw = 0; draw < kDraws; ++draw) {
       std::vector<double> fresh = noise;
       fresh[i] = rng.Normal();
@@ -303,7 +307,7 @@ TEST(Mixtures, LoadEstimateIsTheChanceOfBeingChosen) {
   const double both =
       router.Balance({kRows, input.data(), noise.data()}, weights.data(), 0, pass.data());
   const double importance = SquaredVariation(weights, gradient);
-  EXPECT_NEAR(both / NoisyTopK<double>::kLoadWeight - importance, expected, 0.01);
+  EXPECT_NEAR(both / NoisyTopK<double>::kLoadWeight - importance, expected, 0.02);
 }
 
 // Without noise a fresh router ties; with it the experts share the rows evenly.

@@ -37,6 +37,10 @@ inline PolicyStructure SmallMixture(const std::string& gate_input) {
 inline PolicyStructure SmallRouted(const std::string& kind) {
   PolicyStructure s = SmallBase();
   s.kind = kind;
+  s.cloud_widths = {5, 4};
+  s.extrinsics_widths = {6};
+  s.z_size = 4;
+  s.hidden = {6, 5};
   s.experts = 4;
   s.top_k = 2;
   s.ranks = {1, 2, 3, 4};
