@@ -56,9 +56,9 @@ dataset: deps  ## draw all objects: training left of a line, out of distribution
 	@mkdir -p paper_figs
 	cp $(OUT)/figures/dataset.png paper_figs/
 
-TABLES  := $(OUT)/tables/table1.md $(OUT)/tables/categories.md
+TABLES  := $(OUT)/tables/table1.md $(OUT)/tables/categories.md $(OUT)/tables/methods.md
 FIGURES := $(addprefix $(OUT)/figures/,curves.png objects.png parts.png per_object.png tsne.png \
-  hand.png hand_parts.png strip.png episode.mp4)
+  baselines.png adr.png hand.png hand_parts.png strip.png episode.mp4)
 PRODUCTS := $(TABLES) $(FIGURES)
 
 .PHONY: experiment
@@ -148,8 +148,22 @@ $(OUT)/uniform.h5: $(EXPERT_FILES) | $(BIN)/train_gate
 
 # --- Evaluation ---------------------------------------------------------------------------------
 
-METHODS := untrained base uniform gate
-LABELS  := Untrained,Base policy,Uniform average,DexReMoE
+# In the order of the paper's table, with its names; then the controls and ours.
+BASELINES := dr privfeat privshape adr res sparse_moe switch mlore mmoe base_long
+label_dr := DR
+label_privfeat := PrivFeat
+label_privshape := PrivShape
+label_adr := ADR
+label_res := Res
+label_sparse_moe := SparseMoE
+label_switch := Switch
+label_mlore := MLoRE
+label_mmoe := MMoE
+label_base_long := Longer base
+BASELINE_LABELS := $(subst ?,,$(subst $(space)?,$(comma),$(strip $(foreach b,$(BASELINES),?$(label_$(b))))))
+METHODS := untrained base $(BASELINES:%=baseline_%) uniform gate
+LABELS  := Untrained,Base policy,$(BASELINE_LABELS),Uniform average,DexReMoE
+OURS    := untrained base uniform gate
 EVAL_FILES := $(METHODS:%=$(OUT)/eval/%.h5)
 
 $(EVAL_FILES): $(OUT)/eval/%.h5: $(OUT)/%.h5 | $(BIN)/evaluate
@@ -221,8 +235,9 @@ $(OUT)/eval/growth/done: $(OUT)/base.h5 | $(BIN)/evaluate
 $(OUT)/figures/growth.png: $(OUT)/eval/growth/done | $(BIN)/plot
 	$(BIN)/plot --kind=growth --in=$(call commas,$(call grown,$(RUN))) \
 	  --labels=$(call commas,$(call grown_labels,$(RUN))) --out=$(basename $@)
-$(OUT)/figures/per_object.png: $(EVAL_FILES) | $(BIN)/plot
-	$(BIN)/plot --kind=bars --in=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" --out=$(basename $@)
+$(OUT)/figures/per_object.png: $(OURS:%=$(OUT)/eval/%.h5) | $(BIN)/plot
+	$(BIN)/plot --kind=bars --in=$(call commas,$^) --labels="Untrained,Base policy,Uniform average,DexReMoE" \
+	  --out=$(basename $@)
 $(OUT)/figures/tsne.png: $(OUT)/tsne.h5 | $(BIN)/plot
 	$(BIN)/plot --kind=tsne --in=$< --out=$(basename $@)
 $(OUT)/figures/objects.png: $(OUT)/objects.mk $(call OBJECT_FILES,mesh) | $(BIN)/render
@@ -252,8 +267,8 @@ LEARN_COLUMNS := successes_per_600,drop_rate,mean_angle,goal_angle
 .PHONY: publish
 publish:  ## copy the tables and figures of a finished run to results/tables and paper_figs
 	@mkdir -p results/tables paper_figs
-	cp $(foreach t,table1 categories,$(addprefix $(OUT)/tables/$(t).,md csv tex)) results/tables/
-	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png hand_parts.png curves.png per_object.png tsne.png strip.png) paper_figs/
+	cp $(foreach t,table1 categories,$(addprefix $(OUT)/tables/$(t).,md csv tex)) $(OUT)/tables/methods.md results/tables/
+	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png hand_parts.png curves.png per_object.png tsne.png strip.png baselines.png adr.png) paper_figs/
 	@for run in cube six; do for table in results/$$run*/tables/learned.md; do [ ! -f $$table ] || \
 	  cp $$table results/tables/learned_$$(basename $$(dirname $$(dirname $$table))).md; done; done
 	@runs=$$(ls -d results/{cube,six,desk*}/curves/base.csv 2>/dev/null | cut -d/ -f2 || true); \

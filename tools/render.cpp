@@ -102,8 +102,10 @@ void RenderTool::RunEpisode() const {
 }
 
 void RenderTool::RunHand() const {
+  const HandModel model = LoadHand(hand);
   Renderer renderer(render);
-  WritePng(out, HandPicture(renderer, LoadHand(hand), q, colliders, Width(640), height));
+  WritePng(out, kind == "hand" ? HandPicture(renderer, model, q, colliders, Width(640), height)
+                               : HandPartsPicture(renderer, model, q, Width(1200), height));
 }
 
 void RenderTool::RunObject() const {
@@ -145,7 +147,7 @@ int main(int argc, char** argv) {
   RenderTool tool;
   tool.Register(options);
   return RunTool(options, argc, argv, [&] {
-    if (tool.kind == "hand") return tool.RunHand();
+    if (tool.kind == "hand" || tool.kind == "hand_parts") return tool.RunHand();
     if (tool.kind == "object") return tool.RunObject();
     if (tool.kind == "episode" || tool.kind == "strip" || tool.kind == "video")
       return tool.RunEpisode();

@@ -20,15 +20,15 @@ namespace {
 
 // Every section that a configuration file may have beside the tools' own names. A section outside
 // both lists is an error; a section that this tool does not use is left to the tools that do.
-constexpr std::array<std::string_view, 14> kSections = {
-    "load",  "scale", "decompose", "cloud", "shape", "hand", "sim",
-    "grasp", "task",  "policy",    "ppo",   "eval",  "tsne", "render"};
-constexpr std::array<std::string_view, 23> kTools = {
-    "make_objects",   "scale_mesh",      "decompose",   "sample_cloud", "train_shape",
-    "describe_shape", "hand_info",       "find_grasps", "train_base",   "train_expert",
-    "train_gate",     "evaluate",        "tabulate",    "embed_gate",   "plot",
-    "render",         "h5_info",         "h5_diff",     "list_objects", "bench_sim",
-    "validate_sim",   "bench_decompose", "mesh_info"};
+constexpr std::array<std::string_view, 16> kSections = {
+    "load", "scale",  "decompose", "cloud", "shape", "hand", "sim",  "grasp",
+    "task", "random", "policy",    "ppo",   "adr",   "eval", "tsne", "render"};
+constexpr std::array<std::string_view, 25> kTools = {
+    "make_objects",   "scale_mesh",     "decompose",   "sample_cloud", "train_shape",
+    "describe_shape", "hand_info",      "find_grasps", "train_base",   "train_expert",
+    "train_gate",     "train_baseline", "evaluate",    "tabulate",     "list_methods",
+    "embed_gate",     "plot",           "render",      "h5_info",      "h5_diff",
+    "mesh_info",      "list_objects",   "bench_sim",   "validate_sim", "bench_decompose"};
 
 template <typename List>
 bool Contains(const List& list, std::string_view word) {

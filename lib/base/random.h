@@ -25,6 +25,9 @@ enum class Stream : std::uint64_t {
   kBootstrap,       // confidence intervals
   kEmbed,           // t-SNE
   kTest,            // tests
+  kRouter,          // noise of a mixture's router
+  kRandomize,       // randomised properties of an episode
+  kNoise,           // noise of observations, actions and forces within an episode
 };
 
 // A 64-bit seed from the run's seed, the purpose and the indices (SplitMix64 finaliser, chained).

@@ -61,11 +61,12 @@ void Actor::GatherHeads(const T* params, ActorPass<T>& pass) const {
 
 template <typename T, typename Z>
 void Actor::Forward(const T* params, const PolicyRows<Wide<T>>& rows, const Z* z,
-                    ActorPass<T>& pass, Wide<T>* mean, Wide<T>* value) const {
+                    ActorPass<T>& pass, Wide<T>* mean, Wide<T>* value, const int* pick) const {
   for (std::int64_t r = 0; r < rows.n; ++r) {
+    const std::int64_t from = pick != nullptr ? pick[r] : r;
     T* input = pass.input + r * trunk_.inputs();
-    Cast(obs_size_, rows.obs + r * obs_size_, input);
-    Cast(z_size_, z + r * z_size_, input + obs_size_);
+    Cast(obs_size_, rows.obs + from * obs_size_, input);
+    Cast(z_size_, z + from * z_size_, input + obs_size_);
   }
   const T* hidden = trunk_.Forward(params, rows.n, pass.input, pass.trunk);
   GatherHeads(params, pass);
@@ -108,10 +109,16 @@ T* Actor::Backward(const T* params, const PolicyRows<Wide<T>>& rows, ActorPass<T
   return dz;
 }
 
+std::vector<Actor> MakeExperts(ParamLayout& layout, const PolicyStructure& s) {
+  std::vector<Actor> experts;
+  for (int i = 0; i < s.experts; ++i) experts.emplace_back(layout, "expert" + std::to_string(i), s);
+  return experts;
+}
+
 #define DEX_INSTANTIATE(T)                                                                         \
   template ActorPass<T> Actor::Carve(std::int64_t, Workspace<T>&) const;                           \
   template void Actor::Forward(const T*, const PolicyRows<Wide<T>>&, const T*, ActorPass<T>&,      \
-                               Wide<T>*, Wide<T>*) const;                                          \
+                               Wide<T>*, Wide<T>*, const int*) const;                              \
   template T* Actor::Backward(const T*, const PolicyRows<Wide<T>>&, ActorPass<T>&, const Wide<T>*, \
                               const Wide<T>*, bool, Wide<T>*) const;
 DEX_INSTANTIATE(BFloat16)
@@ -119,6 +126,6 @@ DEX_INSTANTIATE(float)
 DEX_INSTANTIATE(double)
 #undef DEX_INSTANTIATE
 template void Actor::Forward(const BFloat16*, const PolicyRows<float>&, const float*,
-                             ActorPass<BFloat16>&, float*, float*) const;
+                             ActorPass<BFloat16>&, float*, float*, const int*) const;
 
 }  // namespace dexremoe

@@ -31,10 +31,11 @@ class Actor {
 
   template <typename T>
   ActorPass<T> Carve(std::int64_t n, Workspace<T>& work) const;
-  // z [n, z_size], stored or wide; mean [n, A] and value [n] are set.
+  // z, stored or wide: of rows.n rows, or of those that `pick` [rows.n] names, which also picks
+  // from rows.obs. mean [n, A] and value [n] are set.
   template <typename T, typename Z>
   void Forward(const T* params, const PolicyRows<Wide<T>>& rows, const Z* z, ActorPass<T>& pass,
-               Wide<T>* mean, Wide<T>* value) const;
+               Wide<T>* mean, Wide<T>* value, const int* pick = nullptr) const;
   // Returns the gradient of z [n, z_size], or null when it is not wanted.
   template <typename T>
   T* Backward(const T* params, const PolicyRows<Wide<T>>& rows, ActorPass<T>& pass,
@@ -51,5 +52,8 @@ class Actor {
   Mlp trunk_, mean_, value_;
   std::int64_t mean_weight_, mean_bias_, value_weight_, value_bias_;  // offsets of the heads
 };
+
+// structure.experts actors, "expert0", "expert1", ...
+std::vector<Actor> MakeExperts(ParamLayout& layout, const PolicyStructure& structure);
 
 }  // namespace dexremoe

@@ -22,8 +22,7 @@ void ActorCritic<T>::Initialize(std::uint64_t seed, double log_std, double mean_
   Rng rng(seed, Stream::kInit);
   encoder_.Initialize(rng, params);
   actor_.Initialize(rng, mean_scale, params);
-  const ParamBlock& block = this->layout_.block(this->log_std_block_);
-  std::fill_n(params + block.offset, block.size(), static_cast<float>(log_std));
+  this->FillLogStd(log_std, params);
 }
 
 template <typename T>

@@ -14,9 +14,14 @@ std::vector<int> Widths(int inputs, const std::vector<int>& hidden) {
 }
 
 std::vector<int> ExtrinsicsWidths(const PolicyStructure& s) {
-  std::vector<int> widths = Widths(s.phys_size + s.shape_size(), s.extrinsics_widths);
+  std::vector<int> widths = Widths(s.phys_inputs() + s.shape_size(), s.extrinsics_widths);
   widths.push_back(s.z_size);
   return widths;
+}
+
+std::optional<Mlp> MakeCloud(ParamLayout& layout, const PolicyStructure& s) {
+  if (!s.see_cloud) return std::nullopt;
+  return Mlp(layout, "encoder/cloud", Widths(s.feature_size, s.cloud_widths), false);
 }
 
 }  // namespace
@@ -24,14 +29,18 @@ std::vector<int> ExtrinsicsWidths(const PolicyStructure& s) {
 // NOTE(paper): it gives widths only. Both encoders end linearly, with ELU between their layers.
 Encoder::Encoder(ParamLayout& layout, const PolicyStructure& s)
     : phys_size_(s.phys_size),
+      phys_inputs_(s.phys_inputs()),
       feature_size_(s.feature_size),
       f_size_(s.f_size()),
       num_categories_(s.num_categories),
-      cloud_(layout, "encoder/cloud", Widths(s.feature_size, s.cloud_widths), false),
+      shape_size_(s.shape_size()),
+      phys_seen_(s.phys_seen),
+      see_category_(s.see_category),
+      cloud_(MakeCloud(layout, s)),
       extrinsics_(layout, "encoder/extrinsics", ExtrinsicsWidths(s), false) {}
 
 void Encoder::Initialize(Rng& rng, float* params) const {
-  cloud_.Initialize(rng, 1, params);
+  if (cloud_) cloud_->Initialize(rng, 1, params);
   extrinsics_.Initialize(rng, 1, params);
 }
 
@@ -39,14 +48,14 @@ template <typename T>
 EncoderPass<T> Encoder::Carve(std::int64_t objects, std::int64_t n, Workspace<T>& work) const {
   EncoderPass<T> pass;
   pass.feature = work.Take(objects * feature_size_);
-  pass.cloud = work.Take(cloud_.ActivationSize(objects));
-  pass.shape = work.Take(objects * (f_size_ + num_categories_));
+  pass.cloud = work.Take(cloud_ ? cloud_->ActivationSize(objects) : 0);
+  pass.shape = work.Take(objects * shape_size_);
   pass.input = work.Take(n * extrinsics_.inputs());
   pass.extrinsics = work.Take(extrinsics_.ActivationSize(n));
-  pass.dshape = work.Take(n * (f_size_ + num_categories_));
+  pass.dshape = work.Take(n * shape_size_);
   pass.df = work.template Take<Wide<T>>(objects * f_size_);
   pass.df_stored = work.Take(objects * f_size_);
-  pass.cloud_scratch = work.Take(cloud_.ScratchSize(objects));
+  pass.cloud_scratch = work.Take(cloud_ ? cloud_->ScratchSize(objects) : 0);
   pass.extrinsics_scratch = work.Take(extrinsics_.ScratchSize(n));
   return pass;
 }
@@ -54,11 +63,15 @@ EncoderPass<T> Encoder::Carve(std::int64_t objects, std::int64_t n, Workspace<T>
 template <typename T>
 void Encoder::ShapeForward(const T* params, const ShapeInputs<Wide<T>>& shapes,
                            EncoderPass<T>& pass) const {
-  Cast(shapes.objects * feature_size_, shapes.feature, pass.feature);
-  const T* f = cloud_.Forward(params, shapes.objects, pass.feature, pass.cloud);
+  const T* f = nullptr;
+  if (cloud_) {
+    Cast(shapes.objects * feature_size_, shapes.feature, pass.feature);
+    f = cloud_->Forward(params, shapes.objects, pass.feature, pass.cloud);
+  }
   T* shape = pass.shape;
   for (std::int64_t k = 0; k < shapes.objects; ++k) {
-    shape = std::copy_n(f + k * f_size_, f_size_, shape);
+    if (cloud_) shape = std::copy_n(f + k * f_size_, f_size_, shape);
+    if (!see_category_) continue;
     Cast(num_categories_, shapes.category + k * num_categories_, shape);
     shape += num_categories_;
   }
@@ -67,30 +80,41 @@ void Encoder::ShapeForward(const T* params, const ShapeInputs<Wide<T>>& shapes,
 template <typename T>
 const T* Encoder::Forward(const T* params, const PolicyRows<Wide<T>>& rows,
                           EncoderPass<T>& pass) const {
-  const int shape_size = f_size_ + num_categories_;
+  std::vector<Wide<T>> seen(phys_seen_.size());
   T* input = pass.input;
   for (std::int64_t r = 0; r < rows.n; ++r) {
-    Cast(phys_size_, rows.phys + r * phys_size_, input);
-    input += phys_size_;
-    input = std::copy_n(pass.shape + std::int64_t{rows.object[r]} * shape_size, shape_size, input);
+    const Wide<T>* phys = rows.phys + r * phys_size_;
+    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = phys[phys_seen_[i]];
+    Cast(phys_inputs_, seen.empty() ? phys : seen.data(), input);
+    input += phys_inputs_;
+    input =
+        std::copy_n(pass.shape + std::int64_t{rows.object[r]} * shape_size_, shape_size_, input);
   }
   return extrinsics_.Forward(params, rows.n, pass.input, pass.extrinsics);
 }
 
 template <typename T>
 void Encoder::Backward(const T* params, const ShapeInputs<Wide<T>>& shapes,
-                       const PolicyRows<Wide<T>>& rows, EncoderPass<T>& pass, T* dz,
-                       Wide<T>* grads) const {
-  const int shape_size = f_size_ + num_categories_;
-  extrinsics_.Backward(params, rows.n, pass.input, pass.extrinsics, dz, pass.dshape, grads,
-                       pass.extrinsics_scratch, phys_size_);
-  // Forward gathered f by object; backward adds up, in row order.
-  std::fill_n(pass.df, shapes.objects * f_size_, Wide<T>(0));
+                       const PolicyRows<Wide<T>>& rows, EncoderPass<T>& pass, T* dz, Wide<T>* grads,
+                       const Wide<T>* dshape) const {
+  extrinsics_.Backward(params, rows.n, pass.input, pass.extrinsics, dz,
+                       cloud_ ? pass.dshape : static_cast<T*>(nullptr), grads,
+                       pass.extrinsics_scratch, phys_inputs_);
+  if (cloud_) CloudBackward(params, shapes.objects, rows, pass, grads, dshape);
+}
+
+// Forward gathered f by object; backward adds up, in row order.
+template <typename T>
+void Encoder::CloudBackward(const T* params, std::int64_t objects, const PolicyRows<Wide<T>>& rows,
+                            EncoderPass<T>& pass, Wide<T>* grads, const Wide<T>* dshape) const {
+  std::fill_n(pass.df, objects * f_size_, Wide<T>(0));
   for (std::int64_t r = 0; r < rows.n; ++r)
-    AddTo(f_size_, pass.dshape + r * shape_size, pass.df + std::int64_t{rows.object[r]} * f_size_);
-  Cast(shapes.objects * f_size_, pass.df, pass.df_stored);
-  cloud_.Backward(params, shapes.objects, pass.feature, pass.cloud, pass.df_stored,
-                  static_cast<T*>(nullptr), grads, pass.cloud_scratch);
+    AddTo(f_size_, pass.dshape + r * shape_size_, pass.df + std::int64_t{rows.object[r]} * f_size_);
+  for (std::int64_t k = 0; dshape != nullptr && k < objects; ++k)
+    AddTo(f_size_, dshape + k * shape_size_, pass.df + k * f_size_);
+  Cast(objects * f_size_, pass.df, pass.df_stored);
+  cloud_->Backward(params, objects, pass.feature, pass.cloud, pass.df_stored,
+                   static_cast<T*>(nullptr), grads, pass.cloud_scratch);
 }
 
 #define DEX_INSTANTIATE(T)                                                                         \
@@ -99,8 +123,8 @@ void Encoder::Backward(const T* params, const ShapeInputs<Wide<T>>& shapes,
       const;                                                                                       \
   template const T* Encoder::Forward(const T*, const PolicyRows<Wide<T>>&, EncoderPass<T>&) const; \
   template void Encoder::Backward(const T*, const ShapeInputs<Wide<T>>&,                           \
-                                  const PolicyRows<Wide<T>>&, EncoderPass<T>&, T*, Wide<T>*)       \
-      const;
+                                  const PolicyRows<Wide<T>>&, EncoderPass<T>&, T*, Wide<T>*,       \
+                                  const Wide<T>*) const;
 DEX_INSTANTIATE(BFloat16)
 DEX_INSTANTIATE(float)
 DEX_INSTANTIATE(double)

@@ -1,6 +1,8 @@
 // mu_pc and mu_e (paper, III-B): object descriptor and privileged state to the vector z.
 #pragma once
 
+#include <optional>
+
 #include "nn/mlp.h"
 #include "policy/policy.h"
 
@@ -12,7 +14,7 @@ struct EncoderPass {
   T* feature;     // descriptors [K, feature_size]
   T* cloud;       // activations of mu_pc over the K objects
   T* shape;       // e_shape [K, shape_size]
-  T* input;       // e = [e_phys, e_shape] [n, phys_size + shape_size]
+  T* input;       // e = [e_phys as far as it is seen, e_shape] [n, phys_inputs + shape_size]
   T* extrinsics;  // activations of mu_e over the n rows
   // Backward only.
   T* dshape;    // of input, from e_shape on [n, shape_size]
@@ -22,7 +24,7 @@ struct EncoderPass {
   T* extrinsics_scratch;
 };
 
-// Blocks "encoder/cloud/*" and "encoder/extrinsics/*".
+// Blocks "encoder/cloud/*" (when the cloud is seen) and "encoder/extrinsics/*".
 class Encoder {
  public:
   Encoder(ParamLayout& layout, const PolicyStructure& structure);
@@ -38,14 +40,23 @@ class Encoder {
   // Needs ShapeForward; returns z [n, z_size].
   template <typename T>
   const T* Forward(const T* params, const PolicyRows<Wide<T>>& rows, EncoderPass<T>& pass) const;
-  // dz [n, z_size] is overwritten.
+  // dz [n, z_size] is overwritten. dshape [K, shape_size]: what e_shape's gradient is beside the
+  // one through z (a gate that looks at it), or null.
   template <typename T>
   void Backward(const T* params, const ShapeInputs<Wide<T>>& shapes,
-                const PolicyRows<Wide<T>>& rows, EncoderPass<T>& pass, T* dz, Wide<T>* grads) const;
+                const PolicyRows<Wide<T>>& rows, EncoderPass<T>& pass, T* dz, Wide<T>* grads,
+                const Wide<T>* dshape = nullptr) const;
 
  private:
-  int phys_size_, feature_size_, f_size_, num_categories_;
-  Mlp cloud_, extrinsics_;
+  template <typename T>
+  void CloudBackward(const T* params, std::int64_t objects, const PolicyRows<Wide<T>>& rows,
+                     EncoderPass<T>& pass, Wide<T>* grads, const Wide<T>* dshape) const;
+
+  int phys_size_, phys_inputs_, feature_size_, f_size_, num_categories_, shape_size_;
+  std::vector<int> phys_seen_;
+  bool see_category_;
+  std::optional<Mlp> cloud_;
+  Mlp extrinsics_;
 };
 
 }  // namespace dexremoe

@@ -10,6 +10,7 @@
 // of the update. The rest is Forward and Backward.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -39,6 +40,20 @@ struct PolicyRows {
   const T* phys = nullptr;      // [n, phys_size], normalised
   const int* object = nullptr;  // [n], into ShapeInputs
   const T* frozen = nullptr;    // [n, frozen_size()], or null to have them computed
+  const T* noise = nullptr;     // [n, noise_size()], or null to route without noise
+};
+
+// How a mixture used its experts on some rows; sums over the rows, to be added up.
+struct RoutingSums {
+  double loss = 0;           // the policy's own losses, weighted as in training
+  double entropy = 0;        // nats, of the weights
+  std::vector<double> load;  // [experts]: rows weighed by the expert's weight
+  void Add(const RoutingSums& other) {
+    loss += other.loss;
+    entropy += other.entropy;
+    load.resize(other.load.size(), 0.0);
+    for (std::size_t i = 0; i < load.size(); ++i) load[i] += other.load[i];
+  }
 };
 
 template <typename T>
@@ -72,6 +87,19 @@ class Policy {
   virtual void Backward(const T* params, const ShapeInputs<W>& shapes, const PolicyRows<W>& rows,
                         Workspace<T>& work, const W* dmean, const W* dvalue, W* grads) const = 0;
 
+  // Random numbers per row that routing draws in training; 0 without. They belong to the row as its
+  // action does: the update must see the routing that acted.
+  virtual int noise_size() const { return 0; }
+  // noise [noise_size()] is set.
+  virtual void DrawNoise(Rng& /*rng*/, float* /*noise*/) const {}
+  // Whether training must call Balance.
+  virtual bool routes() const { return false; }
+  // Losses of the policy's own that PPO's is to have added (load balancing), over these rows as one
+  // group. Between Forward and Backward with the same arguments: adds to `sums` and lets Backward
+  // add `weight` times their gradient.
+  virtual void Balance(const PolicyRows<W>& /*rows*/, const ShapeInputs<W>& /*shapes*/,
+                       Workspace<T>& /*work*/, W /*weight*/, RoutingSums& /*sums*/) const {}
+
   // Experts behind a gate; 0 without one.
   virtual int gates() const { return 0; }
   // weights [K, gates()] is set.
@@ -85,6 +113,11 @@ class Policy {
     trainable_.resize(layout_.blocks().size(), 0);
     for (std::size_t i = 0; i < trainable_.size(); ++i)
       if (layout_.block(static_cast<int>(i)).name.starts_with(prefix)) trainable_[i] = on;
+  }
+
+  void FillLogStd(double log_std, float* params) const {
+    const ParamBlock& block = layout_.block(log_std_block_);
+    std::fill_n(params + block.offset, block.size(), static_cast<float>(log_std));
   }
 
   PolicyStructure structure_;

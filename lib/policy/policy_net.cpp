@@ -25,6 +25,10 @@ class StoredNet final : public PolicyNet {
                float* mean, float* value) override {
     policy_->Forward(params_.data(), shapes, rows, work_[worker], mean, value);
   }
+  void Balance(int worker, const ShapeInputs<float>& shapes, const PolicyRows<float>& rows,
+               float weight, RoutingSums& sums) override {
+    policy_->Balance(rows, shapes, work_[worker], weight, sums);
+  }
   void Backward(int worker, const ShapeInputs<float>& shapes, const PolicyRows<float>& rows,
                 const float* dmean, const float* dvalue, float* grads) override {
     policy_->Backward(params_.data(), shapes, rows, work_[worker], dmean, dvalue, grads);

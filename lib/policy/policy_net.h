@@ -20,6 +20,9 @@ class PolicyNet {
                       float* frozen) = 0;
   virtual void Forward(int worker, const ShapeInputs<float>& shapes, const PolicyRows<float>& rows,
                        float* mean, float* value) = 0;
+  // Between Forward and Backward; see Policy.
+  virtual void Balance(int worker, const ShapeInputs<float>& shapes, const PolicyRows<float>& rows,
+                       float weight, RoutingSums& sums) = 0;
   // After Forward with the same arguments.
   virtual void Backward(int worker, const ShapeInputs<float>& shapes, const PolicyRows<float>& rows,
                         const float* dmean, const float* dvalue, float* grads) = 0;

@@ -4,31 +4,16 @@
 
 #include "nn/kernels.h"
 #include "nn/layers.h"
+#include "policy/router.h"
 
 namespace dexremoe {
 namespace {
 
-// Columns of e_shape = [f, one-hot] that the gate sees.
-struct Span {
-  int begin, size;
-};
-Span GateInput(const PolicyStructure& s) {
-  if (s.gate_input == "cloud") return {0, s.f_size()};
-  if (s.gate_input == "category") return {s.f_size(), s.num_categories};
-  return {0, s.shape_size()};
-}
-
 std::vector<int> GateWidths(const PolicyStructure& s) {
-  std::vector<int> widths = {GateInput(s).size};
+  std::vector<int> widths = {GateColumnsOf(s).size};
   widths.insert(widths.end(), s.gate_widths.begin(), s.gate_widths.end());
   widths.push_back(s.experts);
   return widths;
-}
-
-std::vector<Actor> MakeExperts(ParamLayout& layout, const PolicyStructure& s) {
-  std::vector<Actor> experts;
-  for (int i = 0; i < s.experts; ++i) experts.emplace_back(layout, "expert" + std::to_string(i), s);
-  return experts;
 }
 
 }  // namespace
@@ -60,8 +45,7 @@ void SoftMixture<T>::Initialize(std::uint64_t seed, double log_std, double mean_
   std::fill_n(params + weight.offset, gates(), 1.0f / static_cast<float>(gates()));
   const ParamBlock& bias = this->layout_.block(value_.bias(0));
   params[bias.offset] = 0;
-  const ParamBlock& spread = this->layout_.block(this->log_std_block_);
-  std::fill_n(params + spread.offset, spread.size(), static_cast<float>(log_std));
+  this->FillLogStd(log_std, params);
 }
 
 template <typename T>
@@ -122,7 +106,7 @@ void SoftMixture<T>::GateForward(const T* params, std::int64_t objects, const T*
     std::fill_n(pass.weights, objects * gates(), Wide<T>(1) / static_cast<Wide<T>>(gates()));
     return;
   }
-  const Span span = GateInput(this->structure_);
+  const GateColumns span = GateColumnsOf(this->structure_);
   const int shape_size = this->structure_.shape_size();
   for (std::int64_t k = 0; k < objects; ++k)
     std::copy_n(shape + k * shape_size + span.begin, span.size, pass.input + k * span.size);
@@ -207,6 +191,15 @@ void SoftMixture<T>::Backward(const T* params, const ShapeInputs<Wide<T>>& shape
   // gradient.
   value_.Backward(params, rows.n, pass.value_input, pass.dvalue, pass.dvalue,
                   static_cast<T*>(nullptr), grads, static_cast<T*>(nullptr));
+}
+
+template <typename T>
+void SoftMixture<T>::Balance(const PolicyRows<Wide<T>>& rows, const ShapeInputs<Wide<T>>& shapes,
+                             Workspace<T>& work, Wide<T> /*weight*/, RoutingSums& sums) const {
+  work.Reset();
+  const Pass pass = Carve(shapes.objects, rows.n, work);
+  for (std::int64_t r = 0; r < rows.n; ++r)
+    AddRouting(1, gates(), pass.gate.weights + std::int64_t{rows.object[r]} * gates(), sums);
 }
 
 template <typename T>

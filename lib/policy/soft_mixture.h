@@ -46,6 +46,10 @@ class SoftMixture final : public Policy<T> {
   void Backward(const T* params, const ShapeInputs<Wide<T>>& shapes,
                 const PolicyRows<Wide<T>>& rows, Workspace<T>& work, const Wide<T>* dmean,
                 const Wide<T>* dvalue, Wide<T>* grads) const override;
+  bool routes() const override { return true; }
+  // Figures alone: the soft gate has no loss of its own.
+  void Balance(const PolicyRows<Wide<T>>& rows, const ShapeInputs<Wide<T>>& shapes,
+               Workspace<T>& work, Wide<T> weight, RoutingSums& sums) const override;
   int gates() const override { return this->structure_.experts; }
   void GateWeights(const T* params, const ShapeInputs<Wide<T>>& shapes, Workspace<T>& work,
                    Wide<T>* weights) const override;

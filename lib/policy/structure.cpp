@@ -2,6 +2,12 @@
 
 namespace dexremoe {
 
+GateColumns GateColumnsOf(const PolicyStructure& s) {
+  if (s.gate_input == "cloud") return {0, s.f_size()};
+  if (s.gate_input == "category") return {s.f_size(), s.shape_size() - s.f_size()};
+  return {0, s.shape_size()};
+}
+
 void PolicyOptions::Register(Options& options) {
   options.Add("policy.hidden", &hidden, "width of the policy's hidden layers").Range(1, 8192);
   options.Add("policy.layers", &layers, "number of the policy's hidden layers").Range(1, 8);
@@ -19,6 +25,15 @@ void PolicyOptions::Register(Options& options) {
   options.Add("policy.gate_input", &gate_input, "what the gate sees of e_shape")
       .Choices({"full", "cloud", "category"});
   options.Add("policy.gate_uniform", &gate_uniform, "weigh all experts alike instead of gating");
+  options.Add("policy.experts", &experts, "experts of a mixture trained from scratch").Range(1, 64);
+  options.Add("policy.shared_width", &shared_width,
+              "width of mmoe's experts; 0: half of policy.hidden")
+      .Range(0, 8192);
+  options.Add("policy.top_k", &top_k, "experts that act at a time (sparse_moe, mlore)")
+      .Range(1, 64);
+  options.Add("policy.ranks", &ranks, "ranks of the routed experts (mlore)").Range(1, 8192);
+  options.Add("policy.category_rank", &category_rank, "rank of a category's own path (mlore)")
+      .Range(1, 8192);
 }
 
 PolicyStructure PolicyOptions::Base(int obs_size, int phys_size, int num_actions) const {
@@ -30,6 +45,21 @@ PolicyStructure PolicyOptions::Base(int obs_size, int phys_size, int num_actions
   s.extrinsics_widths = extrinsics_widths;
   s.z_size = z_size;
   s.hidden.assign(layers, hidden);
+  return s;
+}
+
+PolicyStructure PolicyOptions::FromScratch(const PolicyStructure& base,
+                                           const std::string& kind) const {
+  PolicyStructure s = base;
+  s.kind = kind;
+  s.experts = experts;
+  s.gate_input = gate_input;
+  if (kind == "sparse_moe" || kind == "mlore") s.top_k = top_k;
+  if (kind == "mmoe")
+    for (int& width : s.hidden) width = shared_width > 0 ? shared_width : (width + 1) / 2;
+  if (kind != "mlore") return s;
+  s.ranks = ranks;
+  s.category_rank = category_rank;
   return s;
 }
 

@@ -9,13 +9,17 @@
 namespace dexremoe {
 
 struct PolicyStructure {
-  std::string kind = "actor_critic";  // or "soft_mixture"
+  std::string kind = "actor_critic";  // or another that MakePolicy knows
   // Inputs and outputs (paper, III-B).
   int obs_size = 66;       // o_t
   int phys_size = 23;      // e_phys
   int feature_size = 100;  // p
   int num_categories = 6;  // one-hot
   int num_actions = 11;
+  // What of it reaches the networks beside o_t: these columns of e_phys (empty: all), mu_pc(p), and
+  // the category.
+  std::vector<int> phys_seen;
+  bool see_cloud = true, see_category = true;
   // Encoders.
   std::vector<int> cloud_widths = {32, 32, 32};     // mu_pc; the last one is f
   std::vector<int> extrinsics_widths = {256, 128};  // hidden layers of mu_e
@@ -23,17 +27,29 @@ struct PolicyStructure {
   bool train_encoders = true;  // false once the base is trained
   // Policy.
   std::vector<int> hidden = {512, 512};
-  // Mixture.
+  // Mixtures.
   int experts = 0;
+  int top_k = 0;           // sparse_moe and mlore: experts that act at a time
+  std::vector<int> ranks;  // mlore: of the routed experts; as many as `experts`
+  int category_rank = 0;   // mlore: of each category's own path
   std::vector<int> gate_widths = {64};
   std::string gate_input = "full";  // e_shape: "full", or the part "cloud" or "category" alone
   bool gate_uniform = false;        // all weights 1 / experts, no gate
   // "f32" or "bf16": what training computes in. Parameters are kept, and evaluated, in float32.
   std::string precision = "f32";
 
-  int f_size() const { return cloud_widths.back(); }
-  int shape_size() const { return f_size() + num_categories; }  // e_shape
+  int f_size() const { return see_cloud ? cloud_widths.back() : 0; }
+  int shape_size() const { return f_size() + (see_category ? num_categories : 0); }  // e_shape
+  int phys_inputs() const {
+    return phys_seen.empty() ? phys_size : static_cast<int>(phys_seen.size());
+  }
 };
+
+// Columns of e_shape = [f, one-hot] that a gate sees.
+struct GateColumns {
+  int begin = 0, size = 0;
+};
+GateColumns GateColumnsOf(const PolicyStructure& structure);
 
 // What a person chooses of it; section "policy".
 struct PolicyOptions {
@@ -47,10 +63,19 @@ struct PolicyOptions {
   std::vector<int> gate_widths = {64};
   std::string gate_input = "full";
   bool gate_uniform = false;
+  // Mixtures that are trained from scratch.
+  int experts = 4;
+  int shared_width = 0;  // mmoe: of the experts' layers; 0: half of `hidden`, so that four experts
+                         // have about the base's number of parameters (Ma et al. compare so)
+  int top_k = 2;
+  std::vector<int> ranks = {16, 32, 48, 64};
+  int category_rank = 40;  // the mean of the ranks, as in MLoRE
 
   void Register(Options& options);
   // The base policy for a task with these sizes.
   PolicyStructure Base(int obs_size, int phys_size, int num_actions) const;
+  // `base` as a mixture of this kind that is trained from scratch.
+  PolicyStructure FromScratch(const PolicyStructure& base, const std::string& kind) const;
   // The mixture of `experts` copies of `expert`.
   PolicyStructure Mixture(const PolicyStructure& expert, int experts) const;
 };

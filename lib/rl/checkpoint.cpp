@@ -53,11 +53,13 @@ void WriteNetwork(H5Writer& file, const TrainState& state, const Policy<float>& 
 }
 
 void WriteRun(H5Writer& file, const TrainState& state) {
-  file.WriteString("stage", state.stage, {"", "", "base, expert or gate"});
+  file.WriteString("stage", state.stage, {"", "", "base, expert, gate or a baseline"});
   file.WriteScalar("seed", state.seed, {"1", "", "of all random streams"});
   file.WriteScalar("iteration", state.iteration, {"1", "", "rollouts and updates done"});
   file.WriteScalar("samples", state.samples, {"1", "", "environment steps done"});
+  WriteCard(file, state.card);
   WriteCurriculum(file, state.curriculum);
+  WriteAdr(file, state.adr);
   WriteWindow(file, state.window);
   WriteBest(file, state);
   WriteCurve(file, state.curve);
@@ -100,7 +102,9 @@ void ReadRun(const H5Reader& file, TrainState& state) {
   state.seed = file.ReadScalar<std::uint64_t>("seed");
   state.iteration = file.ReadScalar<std::int64_t>("iteration");
   state.samples = file.ReadScalar<std::int64_t>("samples");
+  state.card = ReadCard(file);
   state.curriculum = ReadCurriculum(file);
+  state.adr = ReadAdr(file);
   state.window = ReadWindow(file);
   ReadBest(file, state);
   state.curve = ReadCurve(file);

@@ -1,7 +1,8 @@
 // Files of format dexremoe.checkpoint: base.h5, expert_*.h5, gate.h5.
 //
 // | dataset                               | dims, type       | meaning                           |
-// | stage                                 | text             | base, expert or gate              |
+// | stage                                 | text             | base, expert, gate or a baseline  |
+// | method/*                              | text             | MethodCard                        |
 // | structure/*                           | text, i32        | PolicyStructure, field by field   |
 // | params/BLOCK                          | [rows,cols] f32  | parameters, a dataset per block   |
 // | block, trainable                      | [B] text, u8     | in order; 1 where training may go |
@@ -11,9 +12,10 @@
 // | normalizer/clip                       | f64              | limit of normalised inputs        |
 // | seed, iteration, samples              | u64, i64         | with these, every random stream   |
 // | curriculum/*                          | f64, i64, u8     | difficulty, and the next decision |
+// | adr/*                                 | f64, i64         | AdrState, of ADR alone            |
 // | window                                | [W,9] f64        | last ended episodes               |
 // | best/progress, /successes, settled    | f64, i64         | RunScore, TrainState::settled     |
-// | curve/column, curve/row               | [20] text, [I,20] f64 | without wall clock           |
+// | curve/column, curve/row               | [25] text, [I,25] f64 | without wall clock           |
 // | table/name, /feature, /category       | [K]              | objects trained on                |
 // | environment, environment_end          | [bytes] u8, [ranks] i64 | VecEnv::Save; none in best |
 // | example/*                             | f32, i32         | normalised inputs and outputs     |

@@ -45,7 +45,7 @@ void CheckClose(const H5Reader& file, const std::string& name, const std::vector
 }  // namespace
 
 void WriteStructure(H5Writer& file, const PolicyStructure& s) {
-  file.WriteString("structure/kind", s.kind, {"", "", "actor_critic or soft_mixture"});
+  file.WriteString("structure/kind", s.kind, {"", "", "see MakePolicy"});
   WriteNumber(file, "obs_size", s.obs_size);
   WriteNumber(file, "phys_size", s.phys_size);
   WriteNumber(file, "feature_size", s.feature_size);
@@ -56,7 +56,14 @@ void WriteStructure(H5Writer& file, const PolicyStructure& s) {
   WriteNumber(file, "z_size", s.z_size);
   WriteNumber(file, "train_encoders", s.train_encoders);
   WriteWidths(file, "hidden", s.hidden);
+  file.Write("structure/phys_seen", s.phys_seen, {static_cast<std::int64_t>(s.phys_seen.size())},
+             {"1", "input", "columns of e_phys that the networks see; none: all"});
+  WriteNumber(file, "see_cloud", s.see_cloud);
+  WriteNumber(file, "see_category", s.see_category);
   WriteNumber(file, "experts", s.experts);
+  WriteNumber(file, "top_k", s.top_k);
+  WriteWidths(file, "ranks", s.ranks);
+  WriteNumber(file, "category_rank", s.category_rank);
   WriteWidths(file, "gate_widths", s.gate_widths);
   file.WriteString("structure/gate_input", s.gate_input, {"", "", "full, cloud or category"});
   WriteNumber(file, "gate_uniform", s.gate_uniform);
@@ -77,6 +84,14 @@ PolicyStructure ReadStructure(const H5Reader& file) {
   s.train_encoders = ReadNumber(file, "train_encoders") != 0;
   s.hidden = ReadWidths(file, "hidden");
   s.experts = ReadNumber(file, "experts");
+  if (file.Has("structure/top_k")) {  // files from before them have none of these
+    s.phys_seen = ReadWidths(file, "phys_seen");
+    s.see_cloud = ReadNumber(file, "see_cloud") != 0;
+    s.see_category = ReadNumber(file, "see_category") != 0;
+    s.top_k = ReadNumber(file, "top_k");
+    s.ranks = ReadWidths(file, "ranks");
+    s.category_rank = ReadNumber(file, "category_rank");
+  }
   s.gate_widths = ReadWidths(file, "gate_widths");
   s.gate_input = file.ReadString("structure/gate_input");
   s.gate_uniform = ReadNumber(file, "gate_uniform") != 0;
@@ -90,6 +105,8 @@ void WriteCurriculum(H5Writer& file, const CurriculumState& s) {
                    {"rad", "", "goals lie within this of the orientation; pi: anywhere"});
   file.WriteScalar("curriculum/velocity_tolerance", s.difficulty.velocity_tolerance,
                    {"1", "", "factor on the speeds a success allows"});
+  file.WriteScalar("curriculum/objects", s.difficulty.objects,
+                   {"1", "", "objects in training so far; 0: all, from the start"});
   file.WriteScalar("curriculum/angle_next", std::uint8_t{s.angle_next},
                    {"1", "", "1 when the goal angle moves next"});
   file.WriteScalar("curriculum/samples", s.samples, {"1", "", "since the last decision"});
@@ -101,6 +118,8 @@ CurriculumState ReadCurriculum(const H5Reader& file) {
   CurriculumState s;
   s.difficulty.goal_angle = file.ReadScalar<double>("curriculum/goal_angle");
   s.difficulty.velocity_tolerance = file.ReadScalar<double>("curriculum/velocity_tolerance");
+  if (file.Has("curriculum/objects"))
+    s.difficulty.objects = file.ReadScalar<std::int32_t>("curriculum/objects");
   s.angle_next = file.ReadScalar<std::uint8_t>("curriculum/angle_next") != 0;
   s.samples = file.ReadScalar<std::int64_t>("curriculum/samples");
   s.episodes = file.ReadScalar<std::int64_t>("curriculum/episodes");
@@ -168,12 +187,18 @@ void WriteCurve(H5Writer& file, const std::vector<CurveRow>& curve) {
              {"rad, m, 1", "iteration, column", "learning curve"});
 }
 
+// Columns that the file does not know (it is older than they are) are 0.
 std::vector<CurveRow> ReadCurve(const H5Reader& file) {
+  const std::vector<std::string> names = file.ReadStrings("curve/column");
   const auto values =
-      file.ReadValues<double>("curve/row", {-1, std::int64_t{kCurveColumns.size()}});
-  std::vector<CurveRow> curve(values.size() / kCurveColumns.size());
-  for (std::size_t i = 0; i < curve.size(); ++i)
-    std::copy_n(values.begin() + i * kCurveColumns.size(), kCurveColumns.size(), curve[i].begin());
+      file.ReadValues<double>("curve/row", {-1, static_cast<std::int64_t>(names.size())});
+  std::vector<CurveRow> curve(names.empty() ? 0 : values.size() / names.size(), CurveRow{});
+  for (std::size_t c = 0; c < kCurveColumns.size(); ++c) {
+    const auto found = std::find(names.begin(), names.end(), kCurveColumns[c]);
+    if (found == names.end()) continue;
+    for (std::size_t i = 0; i < curve.size(); ++i)
+      curve[i][c] = values[i * names.size() + static_cast<std::size_t>(found - names.begin())];
+  }
   return curve;
 }
 

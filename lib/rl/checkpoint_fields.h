@@ -15,6 +15,13 @@ PolicyStructure ReadStructure(const H5Reader& file);
 void WriteCurriculum(H5Writer& file, const CurriculumState& state);
 CurriculumState ReadCurriculum(const H5Reader& file);
 
+// Nothing when there is none.
+void WriteAdr(H5Writer& file, const AdrState& state);
+AdrState ReadAdr(const H5Reader& file);
+
+void WriteCard(H5Writer& file, const MethodCard& card);
+MethodCard ReadCard(const H5Reader& file);
+
 void WriteWindow(H5Writer& file, const std::vector<EpisodeRecord>& window);
 std::vector<EpisodeRecord> ReadWindow(const H5Reader& file);
 

@@ -5,8 +5,8 @@
 
 namespace dexremoe {
 
-Curriculum::Curriculum(const PpoOptions& options, const TaskDifficulty& task)
-    : options_(options), task_(task) {}
+Curriculum::Curriculum(const PpoOptions& options, const TaskDifficulty& task, int objects)
+    : options_(options), task_(task), objects_(objects) {}
 
 CurriculumState Curriculum::Start() const {
   CurriculumState state;
@@ -14,6 +14,7 @@ CurriculumState Curriculum::Start() const {
   if (!options_.curriculum) return state;
   state.difficulty.goal_angle = std::min(options_.goal_angle_start, task_.goal_angle);
   state.difficulty.velocity_tolerance = std::max(options_.velocity_start, task_.velocity_tolerance);
+  state.difficulty.objects = std::min(options_.curriculum_objects, objects_);
   return state;
 }
 
@@ -32,12 +33,16 @@ bool Curriculum::Update(std::int64_t samples, const std::vector<EpisodeRecord>& 
   return rate > options_.curriculum_threshold && Advance(state);
 }
 
-// Moves the one whose turn it is, or the other when that one has arrived.
+// Moves the one whose turn it is, or the other when that one has arrived; then come the objects.
 bool Curriculum::Advance(CurriculumState& state) const {
   TaskDifficulty& now = state.difficulty;
   const bool angle_open = now.goal_angle < std::min(task_.goal_angle, std::numbers::pi);
   const bool velocity_open = now.velocity_tolerance > task_.velocity_tolerance;
-  if (!angle_open && !velocity_open) return false;
+  if (!angle_open && !velocity_open) {
+    if (now.objects == 0 || now.objects == objects_) return false;
+    now.objects = std::min(2 * now.objects, objects_);
+    return true;
+  }
   const bool move_angle = angle_open && (state.angle_next || !velocity_open);
   if (move_angle)
     now.goal_angle = std::min(now.goal_angle * options_.goal_angle_factor, task_.goal_angle);

@@ -1,5 +1,5 @@
 // Goals come nearer and the speed rule is looser at first; both move to the paper's task as the
-// policy succeeds.
+// policy succeeds. With options.curriculum_objects, more objects follow then.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,9 @@ struct CurriculumState {
 // episode, not per step: the latter would reward dropping the object soon.
 class Curriculum {
  public:
-  // `task` is the difficulty it ends at. Without options.curriculum that is the state throughout.
-  Curriculum(const PpoOptions& options, const TaskDifficulty& task);
+  // `task` is the difficulty it ends at, with `objects` in all. Without options.curriculum that is
+  // the state throughout.
+  Curriculum(const PpoOptions& options, const TaskDifficulty& task, int objects = 0);
 
   CurriculumState Start() const;
   // Accounts for one iteration; returns true when the difficulty changed.
@@ -36,6 +37,7 @@ class Curriculum {
   bool Advance(CurriculumState& state) const;
   PpoOptions options_;
   TaskDifficulty task_;
+  int objects_;
 };
 
 }  // namespace dexremoe

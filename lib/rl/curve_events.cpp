@@ -17,7 +17,12 @@ const std::map<std::string_view, const char*> kTags = {
     {"policy_loss", "loss/policy"},
     {"value_loss", "loss/value"},
     {"goal_angle", "curriculum/goal_angle"},
-    {"velocity_tolerance", "curriculum/velocity"}};
+    {"velocity_tolerance", "curriculum/velocity"},
+    {"objects", "curriculum/objects"},
+    {"routing_entropy", "routing/entropy"},
+    {"expert_load_least", "routing/load_least"},
+    {"expert_load_most", "routing/load_most"},
+    {"auxiliary_loss", "loss/auxiliary"}};
 
 double Now() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -29,7 +34,8 @@ CurveEvents::CurveEvents(const std::string& folder, std::int64_t samples) {
   if (!folder.empty()) file_ = std::make_unique<EventFile>(folder, samples);
 }
 
-void CurveEvents::Add(const CurveRow& row, const IterationTime& time, double samples) {
+void CurveEvents::Add(const CurveRow& row, const IterationTime& time, double samples,
+                      const std::vector<std::pair<std::string, double>>& more) {
   if (file_ == nullptr) return;
   std::vector<std::pair<std::string, double>> scalars = {
       {"fps/total", samples / (time.rollout + time.update)},
@@ -44,6 +50,7 @@ void CurveEvents::Add(const CurveRow& row, const IterationTime& time, double sam
     else if (column != "iteration")
       scalars.emplace_back(tag != kTags.end() ? tag->second : column, row[i]);
   }
+  scalars.insert(scalars.end(), more.begin(), more.end());
   file_->Add(step, Now(), scalars);
 }
 

@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "io/event_file.h"
 #include "rl/trainer.h"
@@ -15,8 +17,9 @@ class CurveEvents {
   // steps; what a killed run wrote beyond them is cut off. An empty folder writes nothing.
   CurveEvents(const std::string& folder, std::int64_t samples);
 
-  // `samples` of the iteration, for the rates (samples/s).
-  void Add(const CurveRow& row, const IterationTime& time, double samples);
+  // `samples` of the iteration, for the rates (samples/s). `more`: further scalars by name.
+  void Add(const CurveRow& row, const IterationTime& time, double samples,
+           const std::vector<std::pair<std::string, double>>& more = {});
 
  private:
   std::unique_ptr<EventFile> file_;

@@ -8,10 +8,11 @@
 
 namespace dexremoe {
 
-// The two settings a curriculum may loosen; see TaskOptions.
+// The settings a curriculum may loosen; see TaskOptions.
 struct TaskDifficulty {
   double goal_angle = 3.1416;     // rad; pi and more: any goal
   double velocity_tolerance = 1;  // factor on the speeds a success allows
+  int objects = 0;                // the first of the list, in use; 0: all, from the start
 };
 
 class VecEnv {
@@ -36,6 +37,9 @@ class VecEnv {
   virtual std::vector<EpisodeRecord> TakeRecords() = 0;
 
   virtual void SetDifficulty(const TaskDifficulty& difficulty) = 0;
+  // Ranges of the randomised parameters [kNumRandom], for episodes to come.
+  virtual void SetRandomRanges(const std::vector<double>& /*low*/,
+                               const std::vector<double>& /*high*/) {}
 
   // Everything, bit for bit.
   virtual std::vector<std::uint8_t> Save() const = 0;

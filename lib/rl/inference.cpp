@@ -40,6 +40,7 @@ void Inference::RunBlock(int worker, const ShapeInputs<float>& shapes,
   block.obs = rows.obs + begin * s.obs_size;
   block.phys = rows.phys + begin * s.phys_size;
   block.object = rows.object + begin;
+  if (rows.noise != nullptr) block.noise = rows.noise + begin * policy_.noise_size();
   if (frozen_size > 0) {
     float* frozen =
         out.frozen != nullptr ? out.frozen + begin * frozen_size : scratch.frozen.data();

@@ -1,7 +1,6 @@
 #include "rl/ppo.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/check.h"
@@ -85,6 +84,7 @@ UpdateStats PpoLearner::Update(const RolloutBatch& batch, const ShapeInputs<floa
     stats.value_loss += total.value_loss * share;
     stats.kl += total.kl * share;
     stats.clip_fraction += total.clipped * share;
+    AddRoutingStats(total.routing, share, stats);
     stats.gradient_norm += norm / minibatches / options_.mini_epochs;
     if (options_.adaptive)
       state.learning_rate =
@@ -145,16 +145,29 @@ void PpoLearner::Minibatch(const RolloutBatch& batch, const ShapeInputs<float>& 
     total.value_loss += s.value_loss;
     total.kl += s.kl;
     total.clipped += s.clipped;
+    total.routing.Add(s.routing);
   }
 }
 
 void PpoLearner::SumOverRanks(BlockSums& total) {
-  std::array<double, 4> sums = {total.policy_loss, total.value_loss, total.kl, total.clipped};
+  std::vector<double> sums = {total.policy_loss, total.value_loss,   total.kl,
+                              total.clipped,     total.routing.loss, total.routing.entropy};
+  sums.insert(sums.end(), total.routing.load.begin(), total.routing.load.end());
   communicator_.Sum(sums);
   total.policy_loss = sums[0];
   total.value_loss = sums[1];
   total.kl = sums[2];
   total.clipped = sums[3];
+  total.routing = {sums[4], sums[5], {sums.begin() + 6, sums.end()}};
+}
+
+void PpoLearner::AddRoutingStats(const RoutingSums& total, double share, UpdateStats& stats) const {
+  if (total.load.empty()) return;
+  const auto [least, most] = std::minmax_element(total.load.begin(), total.load.end());
+  stats.routing_entropy += total.entropy * share;
+  stats.least_load += *least * share;
+  stats.most_load += *most * share;
+  stats.auxiliary_loss += total.loss * share;
 }
 
 PolicyRows<float> PpoLearner::Gather(const RolloutBatch& batch, const int* rows, int count,
@@ -164,8 +177,13 @@ PolicyRows<float> PpoLearner::Gather(const RolloutBatch& batch, const int* rows,
   GatherRows(batch.phys, s.phys_size, rows, count, scratch.phys);
   GatherRows(batch.object, 1, rows, count, scratch.object);
   GatherRows(batch.frozen, policy_.frozen_size(), rows, count, scratch.frozen);
-  return {count, scratch.obs.data(), scratch.phys.data(), scratch.object.data(),
-          policy_.frozen_size() > 0 ? scratch.frozen.data() : nullptr};
+  GatherRows(batch.noise, policy_.noise_size(), rows, count, scratch.noise);
+  return {count,
+          scratch.obs.data(),
+          scratch.phys.data(),
+          scratch.object.data(),
+          policy_.frozen_size() > 0 ? scratch.frozen.data() : nullptr,
+          policy_.noise_size() > 0 ? scratch.noise.data() : nullptr};
 }
 
 void PpoLearner::Block(int worker, const RolloutBatch& batch, const ShapeInputs<float>& shapes,
@@ -186,6 +204,9 @@ void PpoLearner::Block(int worker, const RolloutBatch& batch, const ShapeInputs<
     RowLoss(batch, rows[i], static_cast<float>(row_weight), scratch.mean.data() + i * actions,
             scratch.value[i], scratch.dmean.data() + i * actions, &scratch.dvalue[i], sums);
   for (double& d : sums.dlog_std) d -= count * row_weight * options_.entropy_coef;
+  // Balance is judged over the block, as a group of rows.
+  if (policy_.routes())
+    net_->Balance(worker, shapes, in, static_cast<float>(count * row_weight), sums.routing);
   net_->Backward(worker, shapes, in, scratch.dmean.data(), scratch.dvalue.data(), grads);
 }
 

@@ -19,6 +19,10 @@ namespace dexremoe {
 struct UpdateStats {
   double policy_loss = 0, value_loss = 0, kl = 0, clip_fraction = 0, gradient_norm = 0;
   double explained_variance = 0;  // of the targets, by the values of the rollout
+  // Of a policy that routes rows to experts; else 0.
+  double routing_entropy = 0;            // nats
+  double least_load = 0, most_load = 0;  // shares of the idlest and the busiest expert
+  double auxiliary_loss = 0;             // its own losses, weighted
 };
 
 // The adaptive rule, applied once per mini-epoch: down by rate_factor above twice the threshold, up
@@ -43,10 +47,11 @@ class PpoLearner {
   struct BlockSums {
     double policy_loss = 0, value_loss = 0, kl = 0, clipped = 0;
     std::vector<double> dlog_std;  // [A]
+    RoutingSums routing;
   };
   // Rows of a block gathered from the batch, and what the policy makes of them. Per worker.
   struct Scratch {
-    std::vector<float> obs, phys, frozen, mean, value, dmean, dvalue;
+    std::vector<float> obs, phys, frozen, noise, mean, value, dmean, dvalue;
     std::vector<int> object;
   };
   void Prepare(const RolloutBatch& batch, TrainState& state);
@@ -55,6 +60,7 @@ class PpoLearner {
   void Block(int worker, const RolloutBatch& batch, const ShapeInputs<float>& shapes,
              const int* rows, int count, double row_weight, float* grads, BlockSums& sums);
   void SumOverRanks(BlockSums& total);
+  void AddRoutingStats(const RoutingSums& total, double share, UpdateStats& stats) const;
   PolicyRows<float> Gather(const RolloutBatch& batch, const int* rows, int count,
                            Scratch& scratch) const;
   void RowLoss(const RolloutBatch& batch, int row, float row_weight, const float* mean, float value,

@@ -41,6 +41,10 @@ void PpoOptions::Register(Options& options) {
       .Range(0, 600);
   options.Add("ppo.curriculum_period", &curriculum_period, "samples between decisions")
       .Range(1, 1e12);
+  options
+      .Add("ppo.curriculum_objects", &curriculum_objects,
+           "objects at first, doubled once goals and speeds are the task's; 0: all")
+      .Range(0, 1 << 20);
   options.Add("ppo.stats_window", &stats_window, "last episodes in the curve; 0: as environments")
       .Range(0, 1 << 24);
 }

@@ -48,6 +48,9 @@ struct PpoOptions {
   double velocity_factor = 0.85;
   double curriculum_threshold = 1.5;  // successes per episode
   double curriculum_period = 5e5;     // samples between decisions
+  // Objects to begin with; once goals and speeds are the task's they double with every advance. 0:
+  // all from the start.
+  int curriculum_objects = 0;
   // Figures.
   int stats_window = 0;  // last episodes in the curve; 0 takes the number of environments
 

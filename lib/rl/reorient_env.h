@@ -26,6 +26,11 @@ class ReorientEnv final : public VecEnv {
   void SetDifficulty(const TaskDifficulty& difficulty) override {
     batch_.mutable_options().goal_angle = difficulty.goal_angle;
     batch_.mutable_options().velocity_tolerance = difficulty.velocity_tolerance;
+    batch_.mutable_options().objects_in_use = difficulty.objects;
+  }
+  void SetRandomRanges(const std::vector<double>& low, const std::vector<double>& high) override {
+    for (int i = 0; i < kNumRandom; ++i)
+      batch_.mutable_options().random.range[i] = {low[i], high[i]};
   }
   std::vector<std::uint8_t> Save() const override { return batch_.Save(); }
   void Restore(const std::vector<std::uint8_t>& bytes) override { batch_.Restore(bytes); }

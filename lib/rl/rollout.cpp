@@ -45,6 +45,7 @@ void Rollout::Resize() {
   batch_.phys.resize(rows * env_.phys_size());
   batch_.object.resize(rows);
   batch_.frozen.resize(rows * policy_.frozen_size());
+  batch_.noise.resize(rows * policy_.noise_size());
   batch_.mean.resize(rows * env_.num_actions());
   batch_.action.resize(rows * env_.num_actions());
   batch_.log_prob.resize(rows);
@@ -64,6 +65,7 @@ const RolloutBatch& Rollout::Collect(const TrainState& state, const ShapeInputs<
     if (obs_moments != nullptr) UpdateMoments(batch_.envs, env_.obs().data(), *obs_moments);
     if (phys_moments != nullptr) UpdateMoments(batch_.envs, env_.phys().data(), *phys_moments);
     Observe(state, t);
+    DrawRouterNoise(state, t);
     Act(state, shapes, t);
     Record(state, shapes, t, env_.Step(actions_));
   }
@@ -82,6 +84,21 @@ void Rollout::Observe(const TrainState& state, int t) {
   std::copy(env_.object().begin(), env_.object().end(), batch_.object.begin() + row);
 }
 
+void Rollout::DrawRouterNoise(const TrainState& state, int t) {
+  const int size = policy_.noise_size();
+  if (size == 0) return;
+  const std::size_t row = static_cast<std::size_t>(t) * batch_.envs;
+  pool_.ParallelFor((batch_.envs + kActBlock - 1) / kActBlock, [&](int block, int) {
+    const int end = std::min(batch_.envs, (block + 1) * kActBlock);
+    for (int env = block * kActBlock; env < end; ++env) {
+      Rng rng(state.seed, Stream::kRouter,
+              {static_cast<std::uint64_t>(state.iteration), static_cast<std::uint64_t>(t),
+               static_cast<std::uint64_t>(env_.first_env() + env)});
+      policy_.DrawNoise(rng, batch_.noise.data() + (row + env) * size);
+    }
+  });
+}
+
 void Rollout::Act(const TrainState& state, const ShapeInputs<float>& shapes, int t) {
   const int envs = batch_.envs, count = env_.num_actions();
   const std::size_t row = static_cast<std::size_t>(t) * envs;
@@ -89,7 +106,8 @@ void Rollout::Act(const TrainState& state, const ShapeInputs<float>& shapes, int
   inference_.Run(
       state.params, shapes,
       {envs, batch_.obs.data() + row * env_.obs_size(), batch_.phys.data() + row * env_.phys_size(),
-       batch_.object.data() + row, nullptr},
+       batch_.object.data() + row, nullptr,
+       policy_.noise_size() > 0 ? batch_.noise.data() + row * policy_.noise_size() : nullptr},
       {mean, batch_.value.data() + row, batch_.frozen.data() + row * policy_.frozen_size()});
   DenormalizeValues(state.normalizers.value, batch_.value.data() + row, envs);
   const ActionSpread<float> spread(count, batch_.log_std.data());

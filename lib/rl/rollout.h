@@ -19,6 +19,7 @@ struct RolloutBatch {
   std::vector<float> obs, phys;     // [R, ...], normalised
   std::vector<int> object;          // [R]
   std::vector<float> frozen;        // [R, frozen_size]
+  std::vector<float> noise;         // [R, noise_size], of the router
   std::vector<float> mean, action;  // [R, A]; the action is not clamped
   std::vector<float> log_std;       // [A], of the policy that acted
   std::vector<float> log_prob;      // [R]
@@ -44,6 +45,7 @@ class Rollout {
  private:
   void Resize();
   void Observe(const TrainState& state, int t);
+  void DrawRouterNoise(const TrainState& state, int t);
   void Act(const TrainState& state, const ShapeInputs<float>& shapes, int t);
   void Record(const TrainState& state, const ShapeInputs<float>& shapes, int t,
               const StepResult& result);

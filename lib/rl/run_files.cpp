@@ -4,9 +4,28 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "io/atomic_file.h"
 #include "rl/checkpoint.h"
 
 namespace dexremoe {
+
+std::string RangesPath(const std::string& curve) {
+  return std::filesystem::path(curve).replace_extension(".ranges.csv");
+}
+
+namespace {
+
+std::vector<std::pair<std::string, double>> RangesOf(const AdrState& adr) {
+  std::vector<std::pair<std::string, double>> scalars;
+  for (std::size_t i = 0; i < adr.low.size(); ++i)
+    for (const bool high : {false, true})
+      scalars.emplace_back(
+          std::string("adr/") + kRandomParameters[i].name + (high ? "_high" : "_low"),
+          high ? adr.high[i] : adr.low[i]);
+  return scalars;
+}
+
+}  // namespace
 
 RunFiles::RunFiles(RunPaths paths, Provenance provenance, const RunPeriods& periods,
                    const TrainState& start)
@@ -23,7 +42,7 @@ RunFiles::RunFiles(RunPaths paths, Provenance provenance, const RunPeriods& peri
 void RunFiles::Add(const Trainer& trainer, double samples) {
   const CurveRow& row = trainer.state().curve.back();
   curve_.Add(row, trainer.time(), samples);
-  events_.Add(row, trainer.time(), samples);
+  events_.Add(row, trainer.time(), samples, RangesOf(trainer.state().adr));
   if (trainer.improved()) best_ = trainer.state();
   const auto count = [&](double s) { return std::floor(s / periods_.snapshot_samples); };
   const double now = static_cast<double>(trainer.state().samples);
@@ -47,6 +66,8 @@ void RunFiles::Save(const TrainState& last) {
   best_.reset();
   WriteCheckpoint(paths_.out, last, provenance_);
   curve_.Write();
+  if (!last.adr.empty() && !paths_.curve.empty())
+    WriteFile(RangesPath(paths_.curve), AdrCsv(last.adr));
   last_ = Clock::now();
 }
 

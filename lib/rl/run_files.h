@@ -29,6 +29,9 @@ struct RunPeriods {
   double snapshot_samples = 1;  // > 0
 };
 
+// Where ADR's ranges over time go: "adr.csv" -> "adr.ranges.csv".
+std::string RangesPath(const std::string& curve);
+
 class RunFiles {
  public:
   // `start` is the state that the training starts from or resumes at; the best file of an earlier

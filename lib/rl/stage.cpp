@@ -17,6 +17,15 @@
 namespace dexremoe {
 namespace {
 
+void PutFirst(const std::string& name, const std::string& list, std::vector<ObjectEntry>& entries) {
+  if (name.empty()) return;
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const ObjectEntry& entry) { return entry.name == name; });
+  if (found == entries.end())
+    Fail("{}: expected the first object '{}' among those of split train, found none", list, name);
+  std::rotate(entries.begin(), found, found + 1);
+}
+
 std::vector<ObjectEntry> SelectObjects(const StageOptions& stage, const StageKind& kind) {
   for (const std::string& category : kind.categories) CategoryIndex(category);
   std::vector<ObjectEntry> entries = ReadObjectList(stage.objects);
@@ -30,6 +39,7 @@ std::vector<ObjectEntry> SelectObjects(const StageOptions& stage, const StageKin
          kind.categories.empty()
              ? ""
              : fmt::format(" and category {}", fmt::join(kind.categories, ", ")));
+  PutFirst(kind.first_object, stage.objects, entries);
   if (static_cast<std::size_t>(stage.ppo.envs) < entries.size())
     Fail("ppo.envs: expected at least one environment for each of {} objects, found {}",
          entries.size(), stage.ppo.envs);
@@ -71,6 +81,7 @@ TrainState FirstState(const StageOptions& stage, const Options& options, const S
     return state;
   }
   TrainState state = kind.start(start, env.obs_size(), env.phys_size(), env.num_actions());
+  state.card = DescribeMethod(state.stage, state.structure, stage.ppo);
   CheckSizes(state, env, kind.inputs.empty() ? stage.out : kind.inputs.front());
   return state;
 }
@@ -182,7 +193,7 @@ TrainState RunStage(const StageOptions& stage, const Options& options, const Sta
                             MakeShapeTable(objects),
                             stage.seed};
   Trainer trainer(stage.ppo, start.task, FirstState(stage, options, kind, start, env, ranks), env,
-                  pool, ranks);
+                  pool, ranks, stage.adr);
   std::optional<RunFiles> files;
   if (ranks.rank() == 0)
     files.emplace(
@@ -192,6 +203,10 @@ TrainState RunStage(const StageOptions& stage, const Options& options, const Sta
   LogInfo("{}: {} objects, {} environments, {} parameters of which {} in training",
           trainer.state().stage, objects.size(), stage.ppo.envs, trainer.policy().layout().size(),
           TrainableSet(trainer.policy().layout(), trainer.policy().trainable()).size());
+  const MethodCard& card = trainer.state().card;
+  LogInfo("inputs: {}; network: {}", card.inputs, card.network);
+  LogInfo("losses beside PPO's: {}; curriculum: {}; samples: {:.0f}", card.losses, card.curriculum,
+          stage.samples);
   if (ranks.size() > 1) LogInfo("{} processes with {} threads each", ranks.size(), pool.workers());
   Train(stage, trainer, files, ranks, stop);
   TrainState state = trainer.state();

@@ -35,6 +35,7 @@ struct StageOptions {
   SimOptions sim;
   TaskOptions task;
   PpoOptions ppo;
+  AdrOptions adr;  // registered by the tool that offers it
   void Register(Options& options);
 };
 
@@ -42,6 +43,7 @@ struct StageOptions {
 struct StageKind {
   std::vector<std::string> categories;  // objects to train on; empty for all
   std::vector<std::string> inputs;      // checkpoints it starts from
+  std::string first_object;             // put first of the list; empty: as listed
   // The first state; the sizes are those of the environments.
   std::function<TrainState(const StageStart& start, int obs_size, int phys_size, int num_actions)>
       start;

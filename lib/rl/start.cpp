@@ -10,19 +10,19 @@
 namespace dexremoe {
 namespace {
 
-TrainState Common(const StageStart& start, const char* stage) {
+TrainState Common(const StageStart& start, const std::string& stage) {
   TrainState state;
   state.stage = stage;
   state.seed = start.seed;
   state.table = start.table;
   state.learning_rate = start.ppo.learning_rate;
-  state.curriculum = Curriculum(start.ppo, start.task).Start();
+  state.curriculum = Curriculum(start.ppo, start.task, start.table.objects()).Start();
   return state;
 }
 
 // A later stage goes on at the difficulty that the one before had reached.
 CurriculumState Continue(const StageStart& start, const CurriculumState& before) {
-  CurriculumState state = Curriculum(start.ppo, start.task).Start();
+  CurriculumState state = Curriculum(start.ppo, start.task, start.table.objects()).Start();
   if (start.ppo.curriculum) {
     state.difficulty = before.difficulty;
     state.angle_next = before.angle_next;
@@ -84,19 +84,55 @@ void CheckSameBase(const ParamLayout& layout, const TrainState& first,
 
 }  // namespace
 
-TrainState StartBase(const StageStart& start, const PolicyOptions& options, int obs_size,
-                     int phys_size, int num_actions) {
-  TrainState state = Common(start, "base");
-  state.structure = options.Base(obs_size, phys_size, num_actions);
+TrainState StartFresh(const StageStart& start, const PolicyOptions& options,
+                      const PolicyStructure& structure, const std::string& stage) {
+  TrainState state = Common(start, stage);
+  state.structure = structure;
   state.structure.precision = ResolvePrecision(start.ppo.precision);
   const auto policy = MakePolicy<float>(state.structure);
   state.params.resize(policy->layout().size());
   policy->Initialize(start.seed, options.log_std, options.mean_scale, state.params.data());
-  state.normalizers.obs = RunningMoments(obs_size);
-  state.normalizers.phys = RunningMoments(phys_size);
-  state.normalizers.feature = RunningMoments(state.structure.feature_size);
+  state.normalizers.obs = RunningMoments(structure.obs_size);
+  state.normalizers.phys = RunningMoments(structure.phys_size);
+  state.normalizers.feature = RunningMoments(structure.feature_size);
   state.normalizers.clip = start.ppo.obs_clip;
   UpdateMoments(start.table.objects(), start.table.feature.data(), state.normalizers.feature);
+  return state;
+}
+
+TrainState StartBase(const StageStart& start, const PolicyOptions& options, int obs_size,
+                     int phys_size, int num_actions) {
+  return StartFresh(start, options, options.Base(obs_size, phys_size, num_actions), "base");
+}
+
+TrainState StartResidual(const StageStart& start, const PolicyOptions& options,
+                         const TrainState& base, const std::string& path) {
+  CheckIsExpert(base, path);
+  TrainState state = Common(start, "res");
+  state.structure = base.structure;
+  state.structure.kind = "residual";
+  state.structure.train_encoders = false;
+  state.structure.precision = ResolvePrecision(start.ppo.precision);
+  const auto from = MakePolicy<float>(base.structure), to = MakePolicy<float>(state.structure);
+  state.params.resize(to->layout().size());
+  to->Initialize(start.seed, options.log_std, options.mean_scale, state.params.data());
+  for (const char* blocks : {"encoder/", "actor/", "log_std"})
+    CopyBlocks(from->layout(), base.params, blocks, to->layout(), blocks, state.params);
+  state.normalizers = base.normalizers;
+  state.curriculum = Continue(start, base.curriculum);
+  state.samples = base.samples;
+  return state;
+}
+
+TrainState ContinueBase(const StageStart& start, const TrainState& base, const std::string& path) {
+  CheckIsExpert(base, path);
+  if (base.table.names != start.table.names || base.table.feature != start.table.feature)
+    Fail("{}: table: expected the objects of this training, found others", path);
+  TrainState state = base;
+  state.stage = "base_long";
+  state.seed = start.seed;
+  state.structure.precision = ResolvePrecision(start.ppo.precision);
+  state.environment.clear();
   return state;
 }
 

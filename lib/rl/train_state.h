@@ -11,7 +11,9 @@
 #include "nn/normalizer.h"
 #include "policy/shape_table.h"
 #include "policy/structure.h"
+#include "rl/adr.h"
 #include "rl/curriculum.h"
+#include "rl/method_card.h"
 
 namespace dexremoe {
 
@@ -22,7 +24,7 @@ struct Normalizers {
 };
 
 // One line of the learning curve; columns as kCurveColumns.
-inline constexpr std::array<const char*, 20> kCurveColumns = {"iteration",
+inline constexpr std::array<const char*, 25> kCurveColumns = {"iteration",
                                                               "samples",
                                                               "successes_per_episode",
                                                               "successes_per_600",
@@ -41,19 +43,26 @@ inline constexpr std::array<const char*, 20> kCurveColumns = {"iteration",
                                                               "clip_fraction",
                                                               "gradient_norm",
                                                               "goal_angle",
-                                                              "velocity_tolerance"};
+                                                              "velocity_tolerance",
+                                                              "objects",
+                                                              "routing_entropy",
+                                                              "expert_load_least",
+                                                              "expert_load_most",
+                                                              "auxiliary_loss"};
 using CurveRow = std::array<double, kCurveColumns.size()>;
 
 // What decides between two states of one run: how far the curriculum had come, then success at that
 // difficulty.
 struct RunScore {
-  double progress = 0;    // rad, goal angle over velocity tolerance: grows as the curriculum moves
+  // rad, goal angle over velocity tolerance, times the share of objects: grows with the curriculum.
+  double progress = 0;
   double successes = -1;  // per episode, mean over the window
   auto operator<=>(const RunScore&) const = default;
 };
 
 struct TrainState {
-  std::string stage;  // "base", "expert" or "gate"
+  std::string stage;  // "base", "expert", "gate", or the baseline's name
+  MethodCard card;
   PolicyStructure structure;
   std::uint64_t seed = 0;  // with the counters, all random streams
   ShapeTable table;        // the objects trained on
@@ -63,6 +72,7 @@ struct TrainState {
   double learning_rate = 0;
   std::int64_t iteration = 0, samples = 0;
   CurriculumState curriculum;
+  AdrState adr;                       // empty without it
   std::vector<EpisodeRecord> window;  // last ended episodes, oldest first
   std::int64_t settled = 0;           // episodes ended since the difficulty last changed
   RunScore best;                      // highest so far

@@ -48,13 +48,14 @@ WindowMeans MeansOf(const std::vector<EpisodeRecord>& window) {
 }  // namespace
 
 Trainer::Trainer(const PpoOptions& options, const TaskDifficulty& task, TrainState state,
-                 VecEnv& env, ThreadPool& pool, Communicator& communicator)
+                 VecEnv& env, ThreadPool& pool, Communicator& communicator, const AdrOptions& adr)
     : options_(options),
+      adr_(adr),
       state_(std::move(state)),
       env_(env),
       communicator_(communicator),
       policy_(MakePolicy<float>(state_.structure)),
-      curriculum_(options, task) {
+      curriculum_(options, task, state_.table.objects()) {
   DEX_CHECK_EQ(static_cast<std::int64_t>(state_.params.size()), policy_->layout().size());
   if (options_.stats_window == 0) options_.stats_window = env.num_envs() * communicator.size();
   shapes_ = std::make_unique<ShapeRows>(state_.table, state_.normalizers.feature,
@@ -67,6 +68,10 @@ Trainer::Trainer(const PpoOptions& options, const TaskDifficulty& task, TrainSta
     env_.Restore(state_.environment[communicator.rank()]);
   }
   env_.SetDifficulty(state_.curriculum.difficulty);
+  if (adr_.on) {
+    if (state_.adr.empty()) state_.adr = StartAdr();
+    env_.SetRandomRanges(state_.adr.low, state_.adr.high);
+  }
   if (!resumed) env_.ResetAll();
 }
 
@@ -100,6 +105,8 @@ const CurveRow& Trainer::Iterate() {
     env_.SetDifficulty(state_.curriculum.difficulty);
     state_.settled = 0;
   }
+  if (adr_.on && UpdateAdr(adr_, records, state_.samples, state_.adr))
+    env_.SetRandomRanges(state_.adr.low, state_.adr.high);
   return state_.curve.back();
 }
 
@@ -112,8 +119,11 @@ void Trainer::Judge() {
   improved_ = false;
   if (state_.settled < options_.stats_window) return;
   const TaskDifficulty& now = state_.curriculum.difficulty;
-  const RunScore score = {std::min(now.goal_angle, std::numbers::pi) / now.velocity_tolerance,
-                          MeansOf(state_.window).successes};
+  const double share =
+      now.objects > 0 ? static_cast<double>(now.objects) / state_.table.objects() : 1.0;
+  const RunScore score = {
+      share * std::min(now.goal_angle, std::numbers::pi) / now.velocity_tolerance,
+      MeansOf(state_.window).successes};
   improved_ = score > state_.best;
   if (improved_) state_.best = score;
 }
@@ -164,7 +174,12 @@ CurveRow Trainer::MakeRow(const UpdateStats& stats, double learning_rate) const 
           stats.clip_fraction,
           stats.gradient_norm,
           difficulty.goal_angle,
-          difficulty.velocity_tolerance};
+          difficulty.velocity_tolerance,
+          static_cast<double>(difficulty.objects > 0 ? difficulty.objects : state_.table.objects()),
+          stats.routing_entropy,
+          stats.least_load,
+          stats.most_load,
+          stats.auxiliary_loss};
 }
 
 }  // namespace dexremoe

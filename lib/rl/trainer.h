@@ -27,7 +27,7 @@ class Trainer {
   // ranks as there are, else starts new episodes. `env` is this rank's share of the environments;
   // all else, `state` too, is and stays equal on every rank. All references must outlive this.
   Trainer(const PpoOptions& options, const TaskDifficulty& task, TrainState state, VecEnv& env,
-          ThreadPool& pool, Communicator& communicator = Alone());
+          ThreadPool& pool, Communicator& communicator = Alone(), const AdrOptions& adr = {});
   ~Trainer();
 
   // One rollout and update; appends to state().curve.
@@ -50,6 +50,7 @@ class Trainer {
   CurveRow MakeRow(const UpdateStats& stats, double learning_rate) const;
 
   PpoOptions options_;
+  AdrOptions adr_;
   TrainState state_;
   VecEnv& env_;
   Communicator& communicator_;

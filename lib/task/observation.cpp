@@ -110,4 +110,23 @@ int PhysSize(const TaskOptions& options, const HandModel& hand) {
   return size;
 }
 
+std::vector<int> ObservableColumns(const TaskOptions& options, const HandModel& hand) {
+  // WritePhys: mass, centre of mass, friction, scale; position 6..8, orientation 9..12; velocity,
+  // spin; relative orientation 19..22.
+  std::vector<int> columns = {6, 7, 8, 9, 10, 11, 12, 19, 20, 21, 22};
+  int next = kPhysSize;
+  const auto add = [&](const char* name, int count, bool seen) {
+    if (!internal::Shows(options, name)) return;
+    for (int i = 0; seen && i < count; ++i) columns.push_back(next + i);
+    next += count;
+  };
+  const int fingers = static_cast<int>(hand.chains.size());
+  add("goal_vector", 3, true);
+  add("joint_speed", hand.num_joints(), true);
+  add("tip_position", 3 * fingers, true);
+  add("tip_contact", fingers, false);
+  add("wait_clock", 2, true);
+  return columns;
+}
+
 }  // namespace dexremoe

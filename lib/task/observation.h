@@ -33,6 +33,13 @@ Eigen::Quaterniond ShownGoal(const TaskOptions& options, const Eigen::Quaternion
 float* WritePhys(const EnvPhysics& physics, const ObjectMotion& motion,
                  const Eigen::Quaterniond& q_WG, float* phys);
 
+// What the policy sees of the present state: with randomisation a noisy pose and noisy joints.
+struct Sight {
+  ObjectMotion motion;
+  const double* q;             // [J] rad
+  std::vector<double> joints;  // what q points into when they are noisy
+};
+
 struct HandMotion {
   const double* q;                  // [J] rad
   const double* qd;                 // [J] rad/s

@@ -45,6 +45,10 @@ ReorientBatch::Impl::Impl(const TaskOptions& task_options, const SimOptions& sim
     object_keys.push_back(internal::ObjectKey(object.name));
   }
   state.Resize(num_envs, joints, phys_size);
+  if (options.random.on) {
+    state.ResizeRandom(num_envs, joints);
+    randoms.resize(num_envs);
+  }
   result.reward.assign(num_envs, 0);
   result.success.assign(num_envs, 0);
   result.end.assign(num_envs, EpisodeEnd::kNone);
@@ -96,11 +100,8 @@ void ReorientBatch::PlaceIn(int first, int total) {
 }
 
 void ReorientBatch::ResetAll() {
-  const int objects = static_cast<int>(impl_->objects.size());
-  for (int env = 0; env < num_envs(); ++env) {
-    const int number = first_env() + env;
-    impl_->Reset(env, number % objects, number);
-  }
+  for (int env = 0; env < num_envs(); ++env)
+    impl_->Reset(env, impl_->ObjectInUse(env), first_env() + env);
 }
 
 void ReorientBatch::Reset(int env, int object, std::uint64_t episode) {
@@ -162,6 +163,7 @@ void ReorientBatch::Restore(const std::vector<std::uint8_t>& bytes) {
          {&p.mass, &p.com[0], &p.com[1], &p.com[2], &p.friction, &p.torsional_friction, &p.scale})
       in.GetInto(*number);
     p.gravity = {0, 0, impl_->gravity};
+    if (impl_->options.random.on) impl_->RestoreRandom(env);
     impl_->sim->Restore(env, in.GetVector<std::uint8_t>());
   }
   in.Finish();

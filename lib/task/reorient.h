@@ -13,6 +13,7 @@
 #include "base/thread_pool.h"
 #include "sim/batch_sim.h"
 #include "task/object_set.h"
+#include "task/randomization.h"
 
 namespace dexremoe {
 
@@ -61,6 +62,9 @@ struct TaskOptions {
   double near_share = 0;
   double near_angle = 1.2;        // rad
   double velocity_tolerance = 1;  // factor on speed_max and spin_max (a curriculum)
+  // Episodes to come draw on the first so many objects, interleaved; 0: an environment keeps its
+  // object (a curriculum).
+  int objects_in_use = 0;
   // Physical parameters drawn per episode: uniform in [low, high]. The size is the grasp's: it was
   // drawn from scale_range when the grasp was found.
   std::vector<double> mass_range = {0.06, 0.10};  // kg
@@ -69,8 +73,10 @@ struct TaskOptions {
   std::vector<double> torsion_range = {0.0, 0.0};  // m, torsional friction; 0: point contacts
   std::vector<double> scale_range = {1.0, 1.0};
   std::vector<double> com_range = {0.0, 0.0};  // m, offset of the centre of mass, each axis
-  void Register(Options& options);             // section "task"
-  void Check() const;                          // throws UsageError for malformed lists
+  // Domain randomisation, beside the ranges above.
+  RandomOptions random;
+  void Register(Options& options);  // section "task"
+  void Check() const;               // throws UsageError for malformed lists
 };
 
 // e_phys (paper, section III-B): mass 1 (kg), centre of mass 3 (m, O), friction 1, scale 1,
@@ -91,6 +97,10 @@ inline constexpr int kPhysSize = 23;
 //                   the same for ever.
 inline constexpr int kWaitPeriod = 180;  // control steps
 int PhysSize(const TaskOptions& options, const HandModel& hand);
+// Columns of such a row that joint sensors, a camera that follows the object and a clock would
+// give: orientation, position, the goal, joint speeds, where the tips are; not the object's
+// properties, its velocities and what touches it.
+std::vector<int> ObservableColumns(const TaskOptions& options, const HandModel& hand);
 
 // kJam: goal_timeout ran out. Only a timeout leaves the value of the state to be counted on.
 enum class EpisodeEnd : std::uint8_t { kNone, kFall, kTimeout, kJam };
@@ -117,6 +127,7 @@ struct EpisodeRecord {
   double total_reward = 0;   // sum of scaled rewards
   double mean_angle = 0;     // rad, mean over steps of the distance to the goal
   double mean_distance = 0;  // m, mean |dp|
+  int bound = -1;  // of the randomisation's range that it stood at (see BoundMoves), or none
 };
 
 class ReorientBatch {

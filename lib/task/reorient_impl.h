@@ -1,7 +1,11 @@
 // Inside of ReorientBatch. Internal to lib/task.
 #pragma once
 
+#include <algorithm>
+#include <utility>
+
 #include "task/episode.h"
+#include "task/episode_random.h"
 #include "task/observation.h"
 #include "task/reorient.h"
 #include "task/rules.h"
@@ -25,10 +29,25 @@ struct ReorientBatch::Impl {
   void Observe(int env);
   void EndEpisodes();
 
+  // Randomisation (reorient_random.cpp).
+  Rng NoiseOf(int env, int part, int time) const;
+  void StartRandom(int env, EnvPhysics& start);
+  void RestoreRandom(int env);
+  std::vector<double> ActionOf(int env, const float* action);
+  std::pair<double, double> TargetLimits(int env, int joint, double target) const;
+  void PushAtRandom(int env);
+  internal::Sight Look(int env) const;  // motions[env], as it is seen
+
   // Object and joints after the simulator's step, with velocities by finite difference.
   StepFacts Measure(int env, const float* action);
-  void WriteRow(int env, const internal::ObjectMotion& motion);
+  void WriteRow(int env, const internal::Sight& sight);
   void JudgeGoal(int env, StepFacts& facts);
+  // Objects are interleaved over the environments of all processes.
+  int ObjectInUse(int env) const {
+    const int all = static_cast<int>(objects.size());
+    const int in_use = options.objects_in_use > 0 ? std::min(options.objects_in_use, all) : all;
+    return (first_env + env) % in_use;
+  }
   bool Jammed(int env) const {
     return options.goal_timeout > 0 && state.waited[env] >= options.goal_timeout;
   }
@@ -60,9 +79,11 @@ struct ReorientBatch::Impl {
   // Changed by steps.
   std::unique_ptr<BatchSim> sim;
   internal::TaskState state;
-  std::vector<std::uint8_t> running;            // [N], within a decision
-  std::vector<internal::ObjectMotion> motions;  // [N], over the last control step
+  std::vector<std::uint8_t> running;  // [N], within a decision
+  std::vector<internal::ObjectMotion>
+      motions;  // [N], over the last control step; at rest at the start
   std::vector<EnvPhysics> physics;
+  std::vector<internal::EpisodeRandom> randoms;  // [N] with options.random.on
   std::vector<EpisodeRecord> records;
   StepResult result;
 };

@@ -54,8 +54,9 @@ void ReorientBatch::Impl::Reset(int env, int object, std::uint64_t episode) {
   internal::TaskState& s = state;
   s.object[env] = object;
   s.episode[env] = episode;
-  const internal::EpisodeStart start =
+  internal::EpisodeStart start =
       internal::DrawStart(options, objects[object], gravity, seed, KeyOf(env));
+  if (options.random.on) StartRandom(env, start.physics);
   const Grasp& grasp = objects[object].grasps[start.grasp];
   physics[env] = start.physics;
   s.grasp[env] = start.grasp;
@@ -79,18 +80,21 @@ void ReorientBatch::Impl::Reset(int env, int object, std::uint64_t episode) {
   s.goal[env] = {goal.w(), goal.x(), goal.y(), goal.z()};
   s.angle[env] = RotationDistance(grasp.X_WO.q, goal);
   s.distance[env] = (grasp.X_WO.p - Vector3d(options.grasp_center.data())).norm();
-  internal::StartHistory(options, hand, &s.q[row], CommandShown(env), &s.obs[6 * row]);
-  WriteRow(env, {grasp.X_WO});
+  motions[env] = {grasp.X_WO};
+  const internal::Sight sight = Look(env);
+  internal::StartHistory(options, hand, sight.q, CommandShown(env), &s.obs[6 * row]);
+  WriteRow(env, sight);
 }
 
-// e_phys of the present state, in which the object moves as `motion` says.
-void ReorientBatch::Impl::WriteRow(int env, const internal::ObjectMotion& motion) {
+// e_phys of the present state as it is seen.
+void ReorientBatch::Impl::WriteRow(int env, const internal::Sight& sight) {
+  const internal::ObjectMotion& motion = sight.motion;
   const std::size_t row = static_cast<std::size_t>(env) * joints;
   const std::uint8_t* touch = &sim->state().tip_contact[env * hand.chains.size()];
   const Quaterniond q_WG = internal::ShownGoal(options, motion.X_WO.q, GoalAt(state, env));
   float* const extras = internal::WritePhys(physics[env], motion, q_WG,
                                             &state.phys[static_cast<std::size_t>(env) * phys_size]);
-  internal::WriteExtras(options, hand, {&state.q[row], &state.qd[row], touch, state.waited[env]},
+  internal::WriteExtras(options, hand, {sight.q, &state.qd[row], touch, state.waited[env]},
                         motion.X_WO, q_WG, extras);
 }
 
@@ -99,14 +103,21 @@ void ReorientBatch::Impl::WriteRow(int env, const internal::ObjectMotion& motion
 void ReorientBatch::Impl::Command(int env, const float* action) {
   if (!running[env]) return;
   const std::size_t row = static_cast<std::size_t>(env) * joints;
+  std::vector<double> disturbed;
+  if (options.random.on) {
+    disturbed = ActionOf(env, action);
+    PushAtRandom(env);
+  }
   for (int j = 0; j < joints; ++j) {
     double& average = state.average[row + j];
-    average += options.ema * (Clamp1(action[j]) - average);
+    const double wanted = disturbed.empty() ? Clamp1(action[j]) : disturbed[j];
+    average += options.ema * (wanted - average);
     double& target = state.target[row + j];
     const double q = state.q[row + j];
+    const auto [lower, upper] = TargetLimits(env, j, target);
     target = std::clamp(target + options.action_scale * average, q - options.target_leash,
                         q + options.target_leash);
-    target = std::clamp(target, hand.joints[j].lower, hand.joints[j].upper);
+    target = std::clamp(target, lower, upper);
   }
 }
 
@@ -191,8 +202,9 @@ void ReorientBatch::Impl::Advance(int env, const float* action) {
 void ReorientBatch::Impl::Observe(int env) {
   if (!state.live[env]) return;
   const std::size_t row = static_cast<std::size_t>(env) * joints;
-  internal::PushHistory(options, hand, &state.q[row], CommandShown(env), &state.obs[6 * row]);
-  WriteRow(env, motions[env]);
+  const internal::Sight sight = Look(env);
+  internal::PushHistory(options, hand, sight.q, CommandShown(env), &state.obs[6 * row]);
+  WriteRow(env, sight);
 }
 
 EpisodeRecord ReorientBatch::Impl::RecordOf(int env) const {
@@ -206,6 +218,7 @@ EpisodeRecord ReorientBatch::Impl::RecordOf(int env) const {
   record.total_reward = state.total_reward[env];
   record.mean_angle = state.total_angle[env] / state.length[env];
   record.mean_distance = state.total_distance[env] / state.length[env];
+  record.bound = internal::DrawBound(options.random, seed, KeyOf(env));
   return record;
 }
 
@@ -223,7 +236,8 @@ void ReorientBatch::Impl::EndEpisodes() {
     result.last_obs.insert(result.last_obs.end(), obs, obs + width);
     result.last_phys.insert(result.last_phys.end(), phys, phys + phys_size);
     if (auto_reset)
-      Reset(env, state.object[env], state.episode[env] + total_envs);
+      Reset(env, options.objects_in_use > 0 ? ObjectInUse(env) : state.object[env],
+            state.episode[env] + total_envs);
     else
       state.live[env] = 0;
   }

@@ -56,6 +56,7 @@ void TaskOptions::Register(Options& options) {
               "torsional friction, moment about the normal over normal force, m: low,high");
   options.Add("task.scale_range", &scale_range, "size factor of grasp search: low,high");
   options.Add("task.com_range", &com_range, "centre-of-mass offset per axis, m: low,high");
+  random.Register(options);
 }
 
 void TaskOptions::Check() const {
@@ -72,6 +73,7 @@ void TaskOptions::Check() const {
   range("torsion_range", torsion_range, 0);
   range("scale_range", scale_range, 1e-3);
   range("com_range", com_range, -1);
+  random.Check();
 }
 
 }  // namespace dexremoe

@@ -13,6 +13,7 @@ void ForEachArray(State& s, Visit&& visit) {
   visit(s.total_reward), visit(s.total_angle), visit(s.total_distance);
   visit(s.average), visit(s.target), visit(s.q), visit(s.qd), visit(s.position), visit(s.rotation);
   visit(s.goal), visit(s.angle), visit(s.distance), visit(s.obs), visit(s.phys);
+  if (!s.random.empty()) visit(s.random), visit(s.last_action), visit(s.force);
 }
 
 // Options that curricula and randomisation change while running.
@@ -27,6 +28,7 @@ template <typename Record, typename Visit>
 void ForEachField(Record& r, Visit&& visit) {
   visit(r.env), visit(r.object), visit(r.episode), visit(r.length), visit(r.successes);
   visit(r.end), visit(r.total_reward), visit(r.mean_angle), visit(r.mean_distance);
+  visit(r.bound);
 }
 
 }  // namespace
@@ -45,6 +47,13 @@ void TaskState::Resize(int num_envs, int joints, int phys_size) {
   goal.assign(n, {1, 0, 0, 0});
   obs.assign(n * 6 * j, 0.0f);
   phys.assign(n * phys_size, 0.0f);
+}
+
+void TaskState::ResizeRandom(int num_envs, int joints) {
+  const std::size_t n = num_envs;
+  random.assign(n * kNumRandom, 0.0);
+  last_action.assign(n * joints, 0.0);
+  force.assign(n * 3, 0.0);
 }
 
 void TaskState::Save(ByteWriter& out) const {

@@ -23,12 +23,15 @@ namespace dexremoe::internal {
 // | total_reward ...  | [N]    |         | sums over the episode's steps                        |
 // | average           | [N,J]  | 1       | moving average of actions                            |
 // | target            | [N,J]  | rad     | servo targets                                        |
-// | q, qd             | [N,J]  | rad(/s) | joints at the last control step; qd is the step's
-// difference | | position          | [N,3]  | m, W    | object at the last control step | |
-// rotation          | [N,4]  | w x y z | object at the last control step                      | |
-// goal              | [N,4]  | w x y z | q_WG                                                 | |
-// angle, distance   | [N]    | rad, m  | to the goal, from the grasp centre                   | |
-// obs, phys         | [N,..] |         | observations; obs rows are the history themselves    |
+// | q, qd             | [N,J]  | rad(/s) | joints at the last control step; qd its difference   |
+// | position          | [N,3]  | m, W    | object at the last control step                      |
+// | rotation          | [N,4]  | w x y z | object at the last control step                      |
+// | goal              | [N,4]  | w x y z | q_WG                                                 |
+// | angle, distance   | [N]    | rad, m  | to the goal, from the grasp centre                   |
+// | obs, phys         | [N,..] |         | observations; obs rows are the history themselves    |
+// | random            | [N,P]  |         | values drawn for the episode (kRandomParameters)     |
+// | last_action       | [N,J]  | 1       | of the decision before, as executed                  |
+// | force             | [N,3]  | N, W    | random force on the object                           |
 struct TaskState {
   std::vector<std::int32_t> object, grasp, length, successes, goals, held, waited;
   std::vector<std::uint64_t> episode;
@@ -38,8 +41,10 @@ struct TaskState {
   std::vector<std::array<double, 4>> goal;
   std::vector<double> angle, distance;
   std::vector<float> obs, phys;
+  std::vector<double> random, last_action, force;  // with randomisation alone
 
   void Resize(int num_envs, int joints, int phys_size);
+  void ResizeRandom(int num_envs, int joints);
   void Save(ByteWriter& out) const;
   // Throws Error when the image does not fit the sizes set by Resize.
   void Restore(ByteReader& in);

@@ -8,68 +8,41 @@
 #include <numeric>
 
 #include "base/error.h"
-#include "nn/gradient_check.h"
+#include "gradient_of_policy.h"
 #include "policy/shape_table.h"
 #include "small_policy.h"
 
 namespace dexremoe {
 namespace {
 
-std::vector<double> RandomParams(const Policy<double>& policy) {
-  Rng rng(4, Stream::kTest, {2});
-  std::vector<double> params(policy.layout().size());
-  for (double& p : params) p = 0.4 * rng.Normal();
-  return params;
-}
-
-// loss = <dmean, mean> + <dvalue, value>.
-double LossOf(const Policy<double>& policy, const Problem<double>& problem,
-              const std::vector<double>& params) {
-  Workspace<double> work;
-  std::vector<double> mean(problem.dmean.size()), value(problem.n);
-  policy.Forward(params.data(), problem.shapes(), problem.rows(), work, mean.data(), value.data());
-  return std::inner_product(mean.begin(), mean.end(), problem.dmean.begin(), 0.0) +
-         std::inner_product(value.begin(), value.end(), problem.dvalue.begin(), 0.0);
-}
-
-// Checks every trainable element; frozen ones must stay untouched.
-void CheckGradients(const PolicyStructure& structure) {
-  const auto policy = MakePolicy<double>(structure);
-  const Problem<double> problem(structure, 9, 4);
-  const std::vector<double> params = RandomParams(*policy);
-  constexpr double kUntouched = 1e30;
-  std::vector<double> grads(params.size(), kUntouched);
-  std::vector<std::int64_t> dense;
-  for (std::size_t b = 0; b < policy->trainable().size(); ++b) {
-    const ParamBlock& block = policy->layout().block(static_cast<int>(b));
-    if (!policy->trainable()[b]) continue;
-    for (std::int64_t i = 0; i < block.size(); ++i) {
-      grads[block.offset + i] = 0;
-      dense.push_back(block.offset + i);
-    }
-  }
-  Workspace<double> work;
-  std::vector<double> mean(problem.dmean.size()), value(problem.n);
-  policy->Forward(params.data(), problem.shapes(), problem.rows(), work, mean.data(), value.data());
-  policy->Backward(params.data(), problem.shapes(), problem.rows(), work, problem.dmean.data(),
-                   problem.dvalue.data(), grads.data());
-  std::vector<double> x, gradient;
-  for (const std::int64_t i : dense) {
-    x.push_back(params[i]);
-    gradient.push_back(grads[i]);
-  }
-  const auto loss = [&](const std::vector<double>& moved) {
-    std::vector<double> all = params;
-    for (std::size_t i = 0; i < dense.size(); ++i) all[dense[i]] = moved[i];
-    return LossOf(*policy, problem, all);
-  };
-  const GradientReport report = CheckGradient(loss, x, gradient);
-  EXPECT_TRUE(report.ok) << report.Text();
-  EXPECT_EQ(static_cast<std::size_t>(std::count(grads.begin(), grads.end(), kUntouched)),
-            grads.size() - dense.size());
-}
-
 TEST(Policy, GradientsOfTheBaseMatchCentralDifferences) { CheckGradients(SmallBase()); }
+
+TEST(Policy, GradientsMatchCentralDifferencesWhateverIsSeen) {
+  PolicyStructure s = SmallBase();
+  s.see_category = false;
+  CheckGradients(s);
+  s.see_cloud = false;
+  s.phys_seen = {0, 2, 3};
+  CheckGradients(s);
+}
+
+// Changes what the policy must not see; nothing else may change with it.
+TEST(Policy, HiddenInputsDoNotMatter) {
+  PolicyStructure s = SmallBase();
+  s.see_cloud = s.see_category = false;
+  s.phys_seen = {0, 3};
+  const auto policy = MakePolicy<double>(s);
+  Problem<double> problem(s, 6, 4);
+  const std::vector<double> params = RandomParams(*policy);
+  const double before = LossOf(*policy, problem, params);
+  for (double& p : problem.feature) p += 1;
+  std::reverse(problem.category.begin(), problem.category.end());
+  for (int r = 0; r < 6; ++r) problem.phys[r * 4 + 1] = problem.phys[r * 4 + 2] = 7;
+  EXPECT_EQ(LossOf(*policy, problem, params), before);
+  problem.phys[3] += 1;
+  EXPECT_NE(LossOf(*policy, problem, params), before);
+  EXPECT_EQ(policy->layout().Find("encoder/cloud/0/weight"), -1);
+}
 
 TEST(Policy, GradientsOfAnExpertMatchCentralDifferencesAndSpareTheEncoders) {
   PolicyStructure s = SmallBase();

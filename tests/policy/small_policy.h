@@ -33,6 +33,21 @@ inline PolicyStructure SmallMixture(const std::string& gate_input) {
   return s;
 }
 
+// A mixture of four experts that is trained from scratch.
+inline PolicyStructure SmallRouted(const std::string& kind) {
+  PolicyStructure s = SmallBase();
+  s.kind = kind;
+  s.cloud_widths = {5, 4};
+  s.extrinsics_widths = {6};
+  s.z_size = 4;
+  s.hidden = {6, 5};
+  s.experts = 4;
+  s.top_k = 2;
+  s.ranks = {1, 2, 3, 4};
+  s.category_rank = 2;
+  return s;
+}
+
 // Random inputs of n rows over K objects, and random weights of a scalar loss.
 template <typename T>
 struct Problem {
@@ -52,11 +67,23 @@ struct Problem {
     dmean = draw(n * s.num_actions);
     dvalue = draw(n);
   }
-  PolicyRows<T> rows() const { return {n, obs.data(), phys.data(), object.data(), nullptr}; }
+  // Draws of the policy's router; the rows bring them from then on.
+  void DrawNoise(const Policy<T>& policy) {
+    std::vector<float> drawn(policy.noise_size());
+    for (std::int64_t r = 0; r < n; ++r) {
+      Rng rng(6, Stream::kTest, {static_cast<std::uint64_t>(r)});
+      policy.DrawNoise(rng, drawn.data());
+      noise.insert(noise.end(), drawn.begin(), drawn.end());
+    }
+  }
+  PolicyRows<T> rows() const {
+    return {
+        n, obs.data(), phys.data(), object.data(), nullptr, noise.empty() ? nullptr : noise.data()};
+  }
   ShapeInputs<T> shapes() const { return {k, feature.data(), category.data()}; }
 
   std::int64_t n, k;
-  std::vector<T> obs, phys, feature, category, dmean, dvalue;
+  std::vector<T> obs, phys, feature, category, dmean, dvalue, noise;
   std::vector<int> object;
 };
 

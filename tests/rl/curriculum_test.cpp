@@ -75,5 +75,34 @@ TEST(Curriculum, FastDroppersDoNotPass) {
   EXPECT_FALSE(curriculum.Update(100, Episodes(std::vector<int>(50, 1), 20), state));
 }
 
+TEST(Curriculum, ObjectsFollowOnceGoalsAndSpeedsAreTheTasks) {
+  PpoOptions options = Options();
+  options.curriculum_objects = 1;
+  const Curriculum curriculum(options, {1, 5}, 5);  // goals and speeds are there already
+  CurriculumState state = curriculum.Start();
+  EXPECT_EQ(state.difficulty.objects, 1);
+  EXPECT_FALSE(curriculum.Update(1000, Episodes({1}), state));  // too little success
+  for (const int objects : {2, 4, 5}) {
+    EXPECT_TRUE(curriculum.Update(100, Episodes({2}), state));
+    EXPECT_EQ(state.difficulty.objects, objects);
+  }
+  EXPECT_FALSE(curriculum.Update(100, Episodes({9}), state));
+  EXPECT_EQ(state.difficulty.objects, 5);
+}
+
+TEST(Curriculum, ObjectsWaitForGoalsAndSpeeds) {
+  PpoOptions options = Options();
+  options.curriculum_objects = 1;
+  const Curriculum curriculum(options, {1.5, 1}, 5);
+  CurriculumState state = curriculum.Start();
+  while (state.difficulty.goal_angle < 1.5 || state.difficulty.velocity_tolerance > 1) {
+    EXPECT_EQ(state.difficulty.objects, 1);
+    ASSERT_TRUE(curriculum.Update(100, Episodes({2}), state));
+  }
+  EXPECT_EQ(state.difficulty.objects, 1);
+  EXPECT_TRUE(curriculum.Update(100, Episodes({2}), state));
+  EXPECT_EQ(state.difficulty.objects, 2);
+}
+
 }  // namespace
 }  // namespace dexremoe
