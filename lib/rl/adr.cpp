@@ -23,7 +23,7 @@ bool MoveBound(int bound, bool outwards, AdrState& state) {
   const bool upper = bound % 2 == 1;
   double& value = upper ? state.high[bound / 2] : state.low[bound / 2];
   const double before = value, step = upper == outwards ? p.step : -p.step;
-  value = p.spread == Spread::kLogUniform ? value * std::exp(step) : value + step;
+  value = p.spread == Distribution::kLogUniform ? value * std::exp(step) : value + step;
   value = upper ? std::clamp(value, p.nominal, p.most) : std::clamp(value, p.least, p.nominal);
   return value != before;
 }

@@ -42,8 +42,9 @@ RandomValues DrawRandomValues(const RandomOptions& options, std::uint64_t seed,
   RandomValues values;
   for (int i = 0; i < kNumRandom; ++i) {
     const double low = options.range[i][0], high = options.range[i][1], u = rng.Uniform();
-    values[i] = kRandomParameters[i].spread == Spread::kLogUniform ? low * std::pow(high / low, u)
-                                                                   : low + (high - low) * u;
+    values[i] = kRandomParameters[i].spread == Distribution::kLogUniform
+                    ? low * std::pow(high / low, u)
+                    : low + (high - low) * u;
   }
   const int bound = DrawBound(options, seed, key);
   if (bound >= 0) values[bound / 2] = options.range[bound / 2][bound % 2];

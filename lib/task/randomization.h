@@ -17,12 +17,12 @@
 
 namespace dexremoe {
 
-enum class Spread { kUniform, kLogUniform };
+enum class Distribution { kUniform, kLogUniform };
 
 struct RandomParameter {
   const char* name;
   const char* help;  // what it is, with its unit
-  Spread spread;
+  Distribution spread;
   double low, high;    // DR's range
   double nominal;      // without randomisation; ADR starts there
   double least, most;  // ADR's limits
@@ -52,34 +52,35 @@ enum RandomIndex {
 };
 
 inline constexpr std::array<RandomParameter, kNumRandom> kRandomParameters = {{
-    {"size", "object size, factor", Spread::kUniform, 0.95, 1.05, 1, 0.9, 1.1, 0.01},
-    {"mass", "object mass, factor", Spread::kUniform, 0.5, 1.5, 1, 0.2, 3, 0.05},
-    {"friction", "friction, factor", Spread::kUniform, 0.7, 1.3, 1, 0.3, 2, 0.05},
-    {"damping", "servo damping, factor", Spread::kLogUniform, 0.3, 3, 1, 0.1, 10, 0.1},
-    {"stiffness", "servo stiffness, factor", Spread::kLogUniform, 0.75, 1.5, 1, 0.3, 3, 0.05},
-    {"gravity", "deviation of gravity per axis, m/s^2", Spread::kUniform, 0.4, 0.4, 0, 0, 2, 0.05},
-    {"joint_limit", "deviation of the targets' limits, rad", Spread::kUniform, 0.15, 0.15, 0, 0,
-     0.4, 0.02},
-    {"position_bias", "deviation of the seen position, fixed in an episode, m", Spread::kUniform,
-     0.005, 0.005, 0, 0, 0.02, 0.0005},
-    {"position_noise", "deviation of the seen position, at every decision, m", Spread::kUniform,
-     0.001, 0.001, 0, 0, 0.01, 0.0002},
+    {"size", "object size, factor", Distribution::kUniform, 0.95, 1.05, 1, 0.9, 1.1, 0.01},
+    {"mass", "object mass, factor", Distribution::kUniform, 0.5, 1.5, 1, 0.2, 3, 0.05},
+    {"friction", "friction, factor", Distribution::kUniform, 0.7, 1.3, 1, 0.3, 2, 0.05},
+    {"damping", "servo damping, factor", Distribution::kLogUniform, 0.3, 3, 1, 0.1, 10, 0.1},
+    {"stiffness", "servo stiffness, factor", Distribution::kLogUniform, 0.75, 1.5, 1, 0.3, 3, 0.05},
+    {"gravity", "deviation of gravity per axis, m/s^2", Distribution::kUniform, 0.4, 0.4, 0, 0, 2,
+     0.05},
+    {"joint_limit", "deviation of the targets' limits, rad", Distribution::kUniform, 0.15, 0.15, 0,
+     0, 0.4, 0.02},
+    {"position_bias", "deviation of the seen position, fixed in an episode, m",
+     Distribution::kUniform, 0.005, 0.005, 0, 0, 0.02, 0.0005},
+    {"position_noise", "deviation of the seen position, at every decision, m",
+     Distribution::kUniform, 0.001, 0.001, 0, 0, 0.01, 0.0002},
     {"rotation_bias", "deviation of the seen orientation, fixed in an episode, rad",
-     Spread::kUniform, 0.1, 0.1, 0, 0, 0.3, 0.01},
+     Distribution::kUniform, 0.1, 0.1, 0, 0, 0.3, 0.01},
     {"rotation_noise", "deviation of the seen orientation, at every decision, rad",
-     Spread::kUniform, 0.1, 0.1, 0, 0, 0.3, 0.01},
-    {"joint_noise", "deviation of the seen joint angles, rad", Spread::kUniform, 0.02, 0.02, 0, 0,
-     0.1, 0.002},
-    {"action_noise", "deviation added to actions, 1", Spread::kUniform, 0.05, 0.05, 0, 0, 0.5,
+     Distribution::kUniform, 0.1, 0.1, 0, 0, 0.3, 0.01},
+    {"joint_noise", "deviation of the seen joint angles, rad", Distribution::kUniform, 0.02, 0.02,
+     0, 0, 0.1, 0.002},
+    {"action_noise", "deviation added to actions, 1", Distribution::kUniform, 0.05, 0.05, 0, 0, 0.5,
      0.01},
-    {"action_gain", "deviation of a factor on actions, 1", Spread::kUniform, 0.015, 0.015, 0, 0,
-     0.2, 0.005},
-    {"action_delay", "chance that an episode's actions come a control step late", Spread::kUniform,
-     0.5, 0.5, 0, 0, 1, 0.05},
+    {"action_gain", "deviation of a factor on actions, 1", Distribution::kUniform, 0.015, 0.015, 0,
+     0, 0.2, 0.005},
+    {"action_delay", "chance that an episode's actions come a control step late",
+     Distribution::kUniform, 0.5, 0.5, 0, 0, 1, 0.05},
     {"force_rate", "chance per 80 ms that the force on the object is drawn anew",
-     Spread::kLogUniform, 0.001, 0.1, 0.01, 0.001, 0.3, 0.1},
-    {"force", "deviation per axis of that force over the object's mass, m/s^2", Spread::kUniform, 1,
-     1, 0, 0, 5, 0.1},
+     Distribution::kLogUniform, 0.001, 0.1, 0.01, 0.001, 0.3, 0.1},
+    {"force", "deviation per axis of that force over the object's mass, m/s^2",
+     Distribution::kUniform, 1, 1, 0, 0, 5, 0.1},
 }};
 
 struct RandomOptions {

@@ -49,7 +49,7 @@ TEST(Randomization, EveryParameterIsSpreadOverItsRangeAsItsTableSays) {
   for (int i = 0; i < kNumRandom; ++i) {
     const RandomParameter& p = kRandomParameters[i];
     SCOPED_TRACE(p.name);
-    const bool log = p.spread == Spread::kLogUniform;
+    const bool log = p.spread == Distribution::kLogUniform;
     const double low = log ? std::log(p.low) : p.low, high = log ? std::log(p.high) : p.high;
     const Moments m = Over([&](const EpisodeKey& key) {
       const double x = internal::DrawRandomValues({}, 1, key)[i];
