@@ -10,6 +10,16 @@
 namespace dexremoe {
 namespace {
 
+// An expert's rows are filled up to a multiple of this: odd numbers of rows make slow products.
+constexpr std::size_t kRowStep = 64;
+
+// Repeats the last row, up to a multiple of kRowStep, as far as `limit` rows go.
+void FillUp(std::int64_t limit, std::vector<int>& rows) {
+  while (!rows.empty() && rows.size() % kRowStep != 0 &&
+         static_cast<std::int64_t>(rows.size()) < limit)
+    rows.push_back(rows.back());
+}
+
 template <typename W>
 std::unique_ptr<Router<W>> MakeRouter(ParamLayout& layout, const PolicyStructure& s) {
   const int inputs = GateColumnsOf(s).size;
@@ -103,11 +113,13 @@ void RoutedMixture<T>::Forward(const T* params, const ShapeInputs<W>& shapes,
   std::vector<int> picked;
   for (int i = 0; i < gates(); ++i) {
     RowsOf(i, rows.n, pass.weights, picked);
+    const std::int64_t count = static_cast<std::int64_t>(picked.size());
+    if (count == 0) continue;
+    FillUp(rows.n, picked);
     PolicyRows<W> ours = rows;
     ours.n = static_cast<std::int64_t>(picked.size());
-    if (ours.n == 0) continue;
     experts_[i].Forward(params, ours, z, pass.experts[i], pass.mean, pass.value, picked.data());
-    for (std::int64_t m = 0; m < ours.n; ++m) {
+    for (std::int64_t m = 0; m < count; ++m) {
       const W w = pass.weights[picked[m] * gates() + i];
       for (int a = 0; a < actions; ++a)
         mean[picked[m] * actions + a] += w * pass.mean[m * actions + a];
@@ -132,11 +144,16 @@ void RoutedMixture<T>::ExpertBackward(const T* params, int expert, const PolicyR
   const int actions = this->structure_.num_actions, z_size = this->structure_.z_size;
   std::vector<int> picked;
   RowsOf(expert, rows.n, pass.weights, picked);
+  const std::int64_t count = static_cast<std::int64_t>(picked.size());
+  if (count == 0) return;
+  FillUp(rows.n, picked);
   PolicyRows<W> ours = rows;
   ours.n = static_cast<std::int64_t>(picked.size());
-  if (ours.n == 0) return;
+  // Rows that fill up have no gradient, and so add nothing.
+  std::fill(pass.dmean + count * actions, pass.dmean + ours.n * actions, W(0));
+  std::fill(pass.dvalue + count, pass.dvalue + ours.n, W(0));
   ActorPass<T>& actor = pass.experts[expert];
-  for (std::int64_t m = 0; m < ours.n; ++m) {
+  for (std::int64_t m = 0; m < count; ++m) {
     const std::int64_t r = picked[m];
     const W* head = actor.head + m * (actions + 1);  // mean and value of Forward
     const W w = pass.weights[r * gates() + expert];
@@ -150,7 +167,7 @@ void RoutedMixture<T>::ExpertBackward(const T* params, int expert, const PolicyR
   }
   const T* dz =
       experts_[expert].Backward(params, ours, actor, pass.dmean, pass.dvalue, true, grads);
-  for (std::int64_t m = 0; m < ours.n; ++m)
+  for (std::int64_t m = 0; m < count; ++m)
     AddTo(z_size, dz + m * z_size, pass.dz + picked[m] * z_size);
 }
 

@@ -26,8 +26,10 @@ void PolicyOptions::Register(Options& options) {
       .Choices({"full", "cloud", "category"});
   options.Add("policy.gate_uniform", &gate_uniform, "weigh all experts alike instead of gating");
   options.Add("policy.experts", &experts, "experts of a mixture trained from scratch").Range(1, 64);
-  options.Add("policy.shared_width", &shared_width,
-              "width of mmoe's experts; 0: half of policy.hidden")
+  options
+      .Add("policy.shared_width", &shared_width,
+           "width of the experts' layers; 0: of policy.hidden 1/1 (switch), 3/4 (sparse_moe), 1/2 "
+           "(mmoe, mlore)")
       .Range(0, 8192);
   options.Add("policy.top_k", &top_k, "experts that act at a time (sparse_moe, mlore)")
       .Range(1, 64);
@@ -55,8 +57,8 @@ PolicyStructure PolicyOptions::FromScratch(const PolicyStructure& base,
   s.experts = experts;
   s.gate_input = gate_input;
   if (kind == "sparse_moe" || kind == "mlore") s.top_k = top_k;
-  if (kind == "mmoe")
-    for (int& width : s.hidden) width = shared_width > 0 ? shared_width : (width + 1) / 2;
+  const int quarters = kind == "switch_moe" ? 4 : kind == "sparse_moe" ? 3 : 2;
+  for (int& width : s.hidden) width = shared_width > 0 ? shared_width : (quarters * width + 3) / 4;
   if (kind != "mlore") return s;
   s.ranks = ranks;
   s.category_rank = category_rank;

@@ -65,8 +65,9 @@ struct PolicyOptions {
   bool gate_uniform = false;
   // Mixtures that are trained from scratch.
   int experts = 4;
-  int shared_width = 0;  // mmoe: of the experts' layers; 0: half of `hidden`, so that four experts
-                         // have about the base's number of parameters (Ma et al. compare so)
+  // Of the experts' layers; 0: of `hidden` all (switch), 3/4 (sparse_moe), 1/2 (mmoe, mlore), so
+  // that parameters and arithmetic stay near the base's although several paths act.
+  int shared_width = 0;
   int top_k = 2;
   std::vector<int> ranks = {16, 32, 48, 64};
   int category_rank = 40;  // the mean of the ranks, as in MLoRE
