@@ -15,12 +15,13 @@ HAND ?= data/hand/gx11.urdf#       ## hand description
 WORKERS ?= 0#                      ## threads (0: one per processor); results do not depend on it
 SEED ?= 1#                         ## seed of everything random
 LAUNCH ?= #                        ## starts trainings on several processes, e.g. "mpirun -n 4"
-SCALE ?= quick#                    ## size of the run: quick, desk or paper
+SCALE ?= quick#                    ## size of the run: quick, small, desk or paper
 CONFIG ?= $(CONFIG_$(SCALE))#  ## sizes and hyper-parameters of all stages; a later file wins
 OUT ?= results/$(SCALE)$(if $(filter builtin,$(OBJECTS)),,-$(notdir $(OBJECTS:%/=%)))#  ## folder of the run
 
 # The configuration files of a size, a later one winning.
 CONFIG_quick := data/config/desk.toml data/config/quick.toml
+CONFIG_small := $(CONFIG_quick) data/config/small.toml
 CONFIG_desk  := data/config/desk.toml
 CONFIG_paper := data/config/paper.toml
 

@@ -13,7 +13,7 @@ namespace dexremoe {
 struct LoadLimits {
   double megabytes = 500;           // of the file
   int triangles = 2000000;          // of the mesh
-  ConfinedLimits confined;          // of the library that reads what is not PLY
+  ConfinedLimits confined = {};     // of the library that reads what is not PLY
   void Register(Options& options);  // section "load"
 };
 

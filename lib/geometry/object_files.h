@@ -26,10 +26,11 @@ struct ObjectMesh {
 
 // The convex pieces that physics collides with, and how well they fit.
 struct ObjectParts {
-  ConvexParts parts;              // in O, m; each closed and convex
-  double volume_ratio = 0;        // summed hull volume / mesh volume
-  std::vector<double> stick_out;  // of each part, or empty: how far it gets outside the mesh, m
-  double hausdorff_ratio = 0;     // symmetric Hausdorff distance / diagonal of the bounding box
+  ConvexParts parts;           // in O, m; each closed and convex
+  double volume_ratio = 0;     // summed hull volume / mesh volume
+  double hausdorff_ratio = 0;  // symmetric Hausdorff distance / diagonal of the bounding box
+  std::vector<double> stick_out =
+      {};  // of each part, or empty: how far it gets outside the mesh, m
 };
 
 void WriteObjectMesh(const std::string& path, const ObjectMesh& object,

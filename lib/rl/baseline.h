@@ -1,6 +1,6 @@
-// The methods that the paper compares itself with, as first states of a training (SPEC: the paper's
-// Table I). All get the same reward and task; they differ in what they see, in their network and in
-// how episodes are drawn.
+// The methods that the paper compares itself with (its Table I), as first states of a training. All
+// get the same reward and task; they differ in what they see, in their network and in how episodes
+// are drawn.
 #pragma once
 
 #include <string>
@@ -10,16 +10,18 @@
 
 namespace dexremoe {
 
-// | dr         | OpenAI et al. 2018: pose, goal and joints with noise, nothing privileged;
-// randomised | | adr        | OpenAI et al. 2019: the same, with ranges that move | | privfeat   |
-// Hora (Qi et al. 2022): e_phys, neither shape nor category                            | |
-// privshape  | RotateIt (Qi et al. 2023): e_phys and shape, no category | | res        | RESPRECT
-// (Ceola et al. 2024): residual over the frozen base                          | | sparse_moe |
-// Shazeer et al. 2017 (policy/sparse_moe.h)                                            | | switch
-// | Fedus et al. 2021 (policy/switch_moe.h)                                              | | mlore
-// | Yang et al. 2024 (policy/mlore_layer.h)                                              | | mmoe
-// | Ma et al. 2018 (policy/mmoe.h)                                                       | |
-// base_long  | control: the base trained on |
+// clang-format off
+// | dr         | OpenAI et al. 2018: pose, goal and joints with noise, nothing privileged; randomised |
+// | adr        | OpenAI et al. 2019: the same, with ranges that move                                  |
+// | privfeat   | Hora (Qi et al. 2022): e_phys, neither shape nor category                            |
+// | privshape  | RotateIt (Qi et al. 2023): e_phys and shape, no category                             |
+// | res        | RESPRECT (Ceola et al. 2024): residual over the frozen base                          |
+// | sparse_moe | Shazeer et al. 2017 (policy/sparse_moe.h)                                            |
+// | switch     | Fedus et al. 2021 (policy/switch_moe.h)                                              |
+// | mlore      | Yang et al. 2024 (policy/mlore_layer.h)                                              |
+// | mmoe       | Ma et al. 2018 (policy/mmoe.h)                                                       |
+// | base_long  | control: the base trained on                                                         |
+// clang-format on
 //
 // NOTE(paper): it lets no method see less than its own definition, but does not say how DR and ADR
 // see the object. Here in place of e_phys they get the columns that sensors could give, with noise
