@@ -170,8 +170,8 @@ TEST_F(Files, ObjectsComeBackBitForBit) {
 TEST_F(Files, PartsComeBackBitForBit) {
   const ObjectParts parts = {.parts = {BoxMesh({0, 0, 0}, {1, 1, 1}), SphereMesh(1, 4)},
                              .volume_ratio = 1.25,
-                             .stick_out = {0.002, 0},
-                             .hausdorff_ratio = 0.015};
+                             .hausdorff_ratio = 0.015,
+                             .stick_out = {0.002, 0}};
   WriteParts(Path("parts.h5"), parts, {"test", "", 0, {}});
   const ObjectParts back = ReadParts(Path("parts.h5"));
   ASSERT_EQ(back.parts.size(), 2u);
