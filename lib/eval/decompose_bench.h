@@ -23,9 +23,11 @@ struct DecomposedMesh {
   std::string set, name;
   int source_triangles = 0, triangles = 0, parts = 0;
   double repair_seconds = 0;
-  double seconds = 0;   // from the closed mesh to the parts
-  double diagonal = 0;  // of the closed mesh, m
-  double voxel = 0;     // m
+  double source_ratio = 0;  // distance of the closed mesh to its source (symmetric Hausdorff) /
+                            // diagonal
+  double seconds = 0;       // from the closed mesh to the parts
+  double diagonal = 0;      // of the closed mesh, m
+  double voxel = 0;         // m
   DecompositionQuality quality;
   // The part that sticks out farthest, in voxels.
   double StickOut() const;

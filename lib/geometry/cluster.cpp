@@ -221,6 +221,24 @@ std::vector<std::vector<int>> Connected(const VoxelSolid& solid, const std::vect
   return groups;
 }
 
+// The high side starts with layer `first_high` of the grid.
+std::vector<Cluster> CutAt(const VoxelSolid& solid, const Concavity& concavity,
+                           const Cluster& cluster, int axis, int first_high) {
+  std::array<std::vector<int>, 2> sides;
+  for (const int i : cluster.voxels) sides[solid.voxels[i].cell[axis] >= first_high].push_back(i);
+  std::vector<Cluster> pieces;
+  for (const std::vector<int>& side : sides)
+    for (std::vector<int>& group : Connected(solid, side))
+      pieces.push_back(MakeCluster(solid, concavity, std::move(group)));
+  return pieces;
+}
+
+double SummedCost(const std::vector<Cluster>& clusters) {
+  double cost = 0;
+  for (const Cluster& cluster : clusters) cost += cluster.Cost();
+  return cost;
+}
+
 }  // namespace
 
 TriMesh SolidHull(const Points& points, double thickness) {
@@ -246,7 +264,9 @@ Cluster MakeCluster(const VoxelSolid& solid, const Concavity& concavity, std::ve
   for (const int i : cluster.voxels) cluster.solid += solid.voxels[i].volume;
   cluster.hull = SolidHull(ClusterPoints(solid, cluster.voxels, 2, true), solid.spacing / 10);
   cluster.hull_volume = MassPropertiesOf(cluster.hull).volume;
-  cluster.concavity = concavity.CostOf(cluster.hull, cluster.voxels);
+  const Concavity::Fit fit = concavity.FitOf(cluster.hull, cluster.voxels);
+  cluster.concavity = concavity.CostOf(fit.distance);
+  cluster.deepest = fit.deepest;
   return cluster;
 }
 
@@ -256,15 +276,19 @@ std::vector<Cluster> CutBest(const VoxelSolid& solid, const Concavity& concavity
   for (int axis = 0; axis < 3; ++axis) profiles.emplace_back(solid, cluster, axis);
   const Plane plane = FindBestPlane(profiles, balance);
   if (plane.axis < 0) return {cluster};
-  const int first_high = profiles[plane.axis].first() + plane.layer;
-  std::array<std::vector<int>, 2> sides;
-  for (const int i : cluster.voxels)
-    sides[solid.voxels[i].cell[plane.axis] >= first_high].push_back(i);
-  std::vector<Cluster> pieces;
-  for (const std::vector<int>& side : sides)
-    for (std::vector<int>& group : Connected(solid, side))
-      pieces.push_back(MakeCluster(solid, concavity, std::move(group)));
-  return pieces;
+  std::vector<Cluster> best =
+      CutAt(solid, concavity, cluster, plane.axis, profiles[plane.axis].first() + plane.layer);
+  if (cluster.deepest < 0) return best;
+  const Eigen::Vector3d open =
+      (solid.voxels[cluster.deepest].on_surface - solid.origin) / solid.spacing;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int first_high = static_cast<int>(std::lround(open[axis]));
+    const int layer = first_high - profiles[axis].first();
+    if (layer <= 0 || layer >= profiles[axis].layers()) continue;
+    std::vector<Cluster> pieces = CutAt(solid, concavity, cluster, axis, first_high);
+    if (SummedCost(pieces) < SummedCost(best)) best = std::move(pieces);
+  }
+  return best;
 }
 
 TriMesh ExactHull(const VoxelSolid& solid, const Cluster& cluster) {

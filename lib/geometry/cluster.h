@@ -15,6 +15,7 @@ struct Cluster {
   TriMesh hull;             // of the solid within
   double hull_volume = 0;   // m^3
   double concavity = 0;     // what it costs, m^3 (Concavity::CostOf)
+  int deepest = -1;         // the voxel deepest below the hull's surface (Concavity::Fit)
   // What is wrong with a single convex part in its place.
   double Cost() const { return hull_volume - solid + concavity; }
 };
@@ -29,7 +30,9 @@ TriMesh ExactHull(const VoxelSolid& solid, const Cluster& cluster);
 
 // Cuts at the best plane between voxel layers along x, y or z, then separates what is no longer
 // connected. One cluster comes back when there is nothing to cut.
-// Score of a plane (V-HACD): summed excess of both hulls + balance * |difference of volumes|.
+// Score of a plane (V-HACD): summed excess of both hulls + balance * |difference of volumes|. The
+// plane of the best score competes, by the summed costs of the pieces, with those that lay the
+// deepest voxel open: a narrow groove holds too little volume to draw a plane.
 // NOTE(paper): V-HACD's third term, which favours cuts across an axis of revolution, is left out.
 std::vector<Cluster> CutBest(const VoxelSolid& solid, const Concavity& concavity,
                              const Cluster& cluster, double balance);

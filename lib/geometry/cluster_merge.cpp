@@ -77,8 +77,8 @@ class JoiningCosts {
   }
   double ConcavityCost(const Cluster& a, const Cluster& b) const {
     const Cluster joint = Join(a, b, reach_ / 10);
-    return std::max(
-        0.0, concavity_.CostOf(joint.hull, joint.voxels) - std::max(a.concavity, b.concavity));
+    return std::max(0.0, concavity_.CostOf(concavity_.FitOf(joint.hull, joint.voxels).distance) -
+                             std::max(a.concavity, b.concavity));
   }
   const std::vector<Cluster>& clusters_;
   double reach_;
@@ -95,7 +95,8 @@ void MergeClusters(std::size_t most, double free_cost, double reach, const Conca
     const auto [a, b, cost] = costs.Cheapest();
     if (clusters.size() <= most && cost > free_cost) break;
     clusters[b] = Join(clusters[b], clusters[a], reach / 10);
-    clusters[b].concavity = concavity.CostOf(clusters[b].hull, clusters[b].voxels);
+    clusters[b].concavity =
+        concavity.CostOf(concavity.FitOf(clusters[b].hull, clusters[b].voxels).distance);
     clusters.erase(clusters.begin() + static_cast<std::ptrdiff_t>(a));
     costs.Update(a, b);
   }

@@ -73,13 +73,13 @@ Concavity::Concavity(const VoxelSolid& solid, double unit, double cost)
   NearestSurface(solid, outside_).Run();
 }
 
-double Concavity::DistanceOf(const TriMesh& hull, const std::vector<int>& voxels) const {
-  return std::max(StickOut(hull), Depth(hull, voxels));
+Concavity::Fit Concavity::FitOf(const TriMesh& hull, const std::vector<int>& voxels) const {
+  Fit fit = Depth(hull, voxels);
+  fit.distance = std::max(fit.distance, StickOut(hull));
+  return fit;
 }
 
-double Concavity::CostOf(const TriMesh& hull, const std::vector<int>& voxels) const {
-  return cost_ * std::pow(DistanceOf(hull, voxels) / unit_, 3);
-}
+double Concavity::CostOf(double distance) const { return cost_ * std::pow(distance / unit_, 3); }
 
 double Concavity::StickOut(const TriMesh& hull) const {
   double most = 0;
@@ -95,21 +95,21 @@ double Concavity::StickOut(const TriMesh& hull) const {
   return most;
 }
 
-double Concavity::Depth(const TriMesh& hull, const std::vector<int>& voxels) const {
+Concavity::Fit Concavity::Depth(const TriMesh& hull, const std::vector<int>& voxels) const {
   std::vector<Eigen::Vector4d> planes;
   for (const auto& [a, b, c] : hull.triangles) {
     const Eigen::Vector3d& p = hull.vertices[a];
     const Eigen::Vector3d normal = (hull.vertices[b] - p).cross(hull.vertices[c] - p).normalized();
     planes.emplace_back(normal.x(), normal.y(), normal.z(), normal.dot(p));
   }
-  double most = 0;
+  Fit most;
   for (const int i : voxels) {
     if (solid_.voxels[i].inner()) continue;
     const Eigen::Vector3d& p = solid_.voxels[i].on_surface;
     double depth = INFINITY;
-    for (std::size_t f = 0; f < planes.size() && depth > most; ++f)
+    for (std::size_t f = 0; f < planes.size() && depth > most.distance; ++f)
       depth = std::min(depth, planes[f].w() - planes[f].head<3>().dot(p));
-    most = std::max(most, depth);
+    if (depth > most.distance) most = {depth, i};
   }
   return most;
 }

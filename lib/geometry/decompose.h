@@ -18,7 +18,7 @@ struct DecomposeOptions {
   int parts = 16;              // at most
   int resolution = 60000;      // voxels in the bounding box
   double volume_error = 0.01;  // excess and concavity that are let be, as a share of the solid
-  double concavity = 0.02;     // what a part that is 3 % of the diagonal off the surface weighs
+  double concavity = 0.1;      // what a part that is 3 % of the diagonal off the surface weighs
   int hull_vertices = 64;      // per part, at most
   double balance = 0.05;       // weight of unequal halves against concavity (V-HACD's alpha)
   void Register(Options& options);  // section "decompose"

@@ -34,7 +34,7 @@ TEST(DecomposeBench, SummarisesEachSetByMedianAndSpread) {
 
 TEST(DecomposeBench, ListsEveryMeshAsCsv) {
   EXPECT_THAT(DecomposeCsv({Measured("one", 1.25)}),
-              HasSubstr("one,\"a,b\",0,0,0.000,0.000,0,1.2500"));
+              HasSubstr("one,\"a,b\",0,0,0.00000,0.000,0.000,0,1.2500"));
 }
 
 TEST(DecomposeBench, RefusesAFolderWithoutMeshes) {

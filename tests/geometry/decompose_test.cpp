@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "geometry/cluster.h"
 #include "geometry/concavity.h"
 #include "geometry/triangle_bvh.h"
 #include "geometry/voxel_solid.h"
@@ -121,14 +122,29 @@ TEST(Concavity, IsTheStickOutOfAHullOrTheDepthOfAHollow) {
   std::iota(all.begin(), all.end(), 0);
   const Concavity concavity(solid, 0.01, 1e-6);
   const TriMesh hull = *ConvexHull(elbow.vertices);
-  EXPECT_NEAR(concavity.DistanceOf(hull, all), 0.01, 0.7 * solid.spacing);
-  EXPECT_NEAR(concavity.CostOf(hull, all),
-              1e-6 * std::pow(concavity.DistanceOf(hull, all) / 0.01, 3), 1e-15);
+  const Concavity::Fit fit = concavity.FitOf(hull, all);
+  EXPECT_NEAR(fit.distance, 0.01, 0.7 * solid.spacing);
+  EXPECT_NEAR(concavity.CostOf(fit.distance), 1e-6 * std::pow(fit.distance / 0.01, 3), 1e-15);
   const TriMesh bar = BoxMesh({0, 0, 0}, {0.03, 0.01, 0.01});
   std::vector<int> low;
   for (const int i : all)
     if (solid.Corner(solid.voxels[i].cell).z() + solid.spacing < 0.01) low.push_back(i);
-  EXPECT_LT(concavity.DistanceOf(bar, low), 0.7 * solid.spacing);
+  EXPECT_LT(concavity.FitOf(bar, low).distance, 0.7 * solid.spacing);
+}
+
+TEST(CutBest, LaysADeepSlitOpen) {
+  // A slit of one hundredth of the block's volume, nearer to one end: no plane that saves volume.
+  const TriMesh left = BoxMesh({0, 0, 0}, {0.0298, 0.04, 0.04});
+  TriMesh block = Joined(left, BoxMesh({0.0302, 0, 0}, {0.1, 0.04, 0.04}));
+  block = Joined(block, BoxMesh({0.02, 0, 0}, {0.04, 0.04, 0.008}));
+  const VoxelSolid solid = Voxelise(block, 60000);
+  const Concavity concavity(solid, 0.03 * BoundsOf(block).Size().norm(), 0.02 * solid.volume);
+  std::vector<int> all(solid.voxels.size());
+  std::iota(all.begin(), all.end(), 0);
+  const Cluster whole = MakeCluster(solid, concavity, all);
+  double left_over = 0;
+  for (const Cluster& piece : CutBest(solid, concavity, whole, 0.05)) left_over += piece.concavity;
+  EXPECT_LT(left_over, 0.1 * whole.concavity);
 }
 
 TEST(DecomposeConvex, ThinGapsCountWhereConcavityWeighs) {

@@ -235,8 +235,11 @@ TEST_F(HostileMesh, AMissingBufferIsRefused) {
 
 TEST_F(HostileMesh, LimitsAreKept) {
   SaveMesh(Path("ball.obj"), SphereMesh(1, 16));
-  EXPECT_THROW(LoadMesh(Path("ball.obj"), {.megabytes = 0.001}), Error);
-  EXPECT_THROW(LoadMesh(Path("ball.obj"), {.triangles = 100}), Error);
+  LoadLimits small_file, few_triangles;
+  small_file.megabytes = 0.001;
+  few_triangles.triangles = 100;
+  EXPECT_THROW(LoadMesh(Path("ball.obj"), small_file), Error);
+  EXPECT_THROW(LoadMesh(Path("ball.obj"), few_triangles), Error);
   ScaleOptions options;
   options.repair.max_closed = 500;
   EXPECT_THAT(Verdict("ball.obj", SphereMesh(1, 16), options), HasSubstr("960 triangles"));
