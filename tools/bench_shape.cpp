@@ -42,10 +42,15 @@ void Run(const BenchShapeOptions& o) {
     sets.push_back(MakeShapeSet("real meshes", std::move(real.train), o.cloud, other_points));
   }
   ThreadPool pool(o.workers);
-  const ShapeBenchResult result = RunShapeBench(o.bench, clouds, sets, NativePrecisions(), pool);
-  if (!o.out.empty()) WriteFile(o.out, result.Markdown());
-  if (!o.csv.empty()) WriteFile(o.csv, CsvOf(result.measurements));
-  std::fputs(result.Markdown().c_str(), stdout);
+  std::string text;
+  // Written after every precision: each takes minutes.
+  RunShapeBench(o.bench, clouds, sets, NativePrecisions(), pool,
+                [&](const ShapeBenchResult& result) {
+                  text = result.Markdown();
+                  if (!o.out.empty()) WriteFile(o.out, text);
+                  if (!o.csv.empty()) WriteFile(o.csv, CsvOf(result.measurements));
+                });
+  std::fputs(text.c_str(), stdout);
 }
 
 }  // namespace

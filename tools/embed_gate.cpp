@@ -8,6 +8,7 @@
 #include "base/options.h"
 #include "base/random.h"
 #include "eval/embedding.h"
+#include "rl/checkpoint.h"
 #include "rl/policy_runner.h"
 #include "shape/cloud.h"
 #include "shape/shape_files.h"
@@ -58,7 +59,29 @@ std::vector<Eigen::Quaternionf> DrawRotations(std::uint64_t seed, std::uint64_t 
   return rotations;
 }
 
-// Descriptors of all turned clouds, object by object.
+// What the gate's policy sees of a cloud in each orientation.
+std::vector<std::vector<float>> Features(const EmbedOptions& o, const ObjectEntry& entry,
+                                         const std::vector<Eigen::Quaternionf>& rotations,
+                                         const ShapeNet& net, ThreadPool& pool) {
+  std::vector<std::vector<float>> features;
+  if (const int count = ReadPolicyStructure(o.gate).cloud_points; count > 0) {
+    const std::vector<float> feature = PointsFeature(entry.folder, count);
+    const Eigen::Map<const Eigen::Matrix3Xf> points(feature.data(), 3, count);
+    for (const Eigen::Quaternionf& rotation : rotations) {
+      const Eigen::Matrix3Xf turned = rotation.toRotationMatrix() * points;
+      features.emplace_back(turned.data(), turned.data() + turned.size());
+    }
+    return features;
+  }
+  std::vector<Eigen::Vector3f> points;
+  for (const Eigen::Vector3d& p : ReadCloud(entry.folder + "/cloud.h5").points)
+    points.push_back(p.cast<float>());
+  for (ShapeDescriptor& d : DescribeRotated(net, points, rotations, pool))
+    features.push_back(std::move(d.feature));
+  return features;
+}
+
+// Features of all turned clouds, object by object.
 struct Turned {
   std::vector<float> feature;
   std::vector<int> category;
@@ -73,19 +96,14 @@ Turned DescribeAll(const EmbedOptions& o, const std::vector<ObjectEntry>& entrie
   Progress progress("descriptors", static_cast<double>(entries.size()));
   const int count = static_cast<int>(entries.size());
   for (int i = 0; i < count; ++i) {
-    std::vector<Eigen::Vector3f> points;
-    for (const Eigen::Vector3d& p : ReadCloud(entries[i].folder + "/cloud.h5").points)
-      points.push_back(p.cast<float>());
     const int share = o.rotations / count + (i < o.rotations % count ? 1 : 0);
     const auto rotations = DrawRotations(o.seed, static_cast<std::uint64_t>(i), share);
-    for (const ShapeDescriptor& d : DescribeRotated(net, points, rotations, pool)) {
-      turned.feature.insert(turned.feature.end(), d.feature.begin(), d.feature.end());
+    for (const std::vector<float>& feature : Features(o, entries[i], rotations, net, pool)) {
+      turned.feature.insert(turned.feature.end(), feature.begin(), feature.end());
       turned.category.push_back(CategoryIndex(entries[i].category));
       turned.object.push_back(i);
     }
-    EmbeddedObject& object = turned.objects.emplace_back();
-    object.name = entries[i].name;
-    object.category = entries[i].category;
+    turned.objects.push_back({.name = entries[i].name, .category = entries[i].category});
     progress.Update(i + 1);
   }
   return turned;

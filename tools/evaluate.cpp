@@ -101,7 +101,9 @@ void RecordTrace(const EvaluateOptions& o, const EvalSetup& setup, const EvalRun
 void Run(const EvaluateOptions& o, const Options& options) {
   const auto entries = SelectEntries(o);
   const Provenance provenance = MakeProvenance(options, o.seed, Inputs(o, entries));
-  EvalSetup setup{o.task, o.sim, LoadHand(o.hand), LoadObjects(entries, {}), o.seed};
+  ObjectSetNeeds needs;
+  if (o.policy != kHold) needs.cloud_points = ReadPolicyStructure(o.policy).cloud_points;
+  EvalSetup setup{o.task, o.sim, LoadHand(o.hand), LoadObjects(entries, needs), o.seed};
   SetCategoryInput(o.eval.category, entries, setup.objects);
   ThreadPool pool(o.workers);
   std::unique_ptr<PolicyRunner> runner;

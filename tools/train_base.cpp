@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   policy.Register(options);
   return RunTool(options, argc, argv, [&] {
     StageKind kind;
+    kind.cloud_points = policy.cloud_points;
     kind.start = [&](const StageStart& start, int obs_size, int phys_size, int num_actions) {
       return StartBase(start, policy, obs_size, phys_size, num_actions);
     };

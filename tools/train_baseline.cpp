@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
       parent = ReadCheckpoint(base);
       kind.inputs = {base};
     }
+    kind.cloud_points = parent ? parent->structure.cloud_points : policy.cloud_points;
     const std::vector<int> observable = ObservableColumns(stage.task, LoadHand(stage.hand));
     kind.start = [&](const StageStart& start, int obs_size, int phys_size, int num_actions) {
       return StartBaseline(method, start, policy, obs_size, phys_size, num_actions, observable,

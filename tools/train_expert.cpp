@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   return RunTool(options, argc, argv, [&] {
     const TrainState parent = ReadCheckpoint(base);
     kind.inputs = {base};
+    kind.cloud_points = parent.structure.cloud_points;
     kind.start = [&](const StageStart& start, int, int, int) {
       return StartExpert(start, parent, base);
     };

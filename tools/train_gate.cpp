@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   return RunTool(options, argc, argv, [&] {
     std::vector<TrainState> experts;
     for (const std::string& path : kind.inputs) experts.push_back(ReadCheckpoint(path));
+    kind.cloud_points = experts.front().structure.cloud_points;
     kind.start = [&](const StageStart& start, int, int, int) {
       return StartGate(start, policy, experts, kind.inputs);
     };

@@ -171,9 +171,9 @@ void ShapeBenchOptions::Register(Options& options) {
   options.Add("seed", &seed, "of the training and of the orientations");
 }
 
-ShapeBenchResult RunShapeBench(const ShapeBenchOptions& options, const LabelledClouds& clouds,
-                               const std::vector<ShapeSet>& sets,
-                               const std::vector<std::string>& precisions, ThreadPool& pool) {
+void RunShapeBench(const ShapeBenchOptions& options, const LabelledClouds& clouds,
+                   const std::vector<ShapeSet>& sets, const std::vector<std::string>& precisions,
+                   ThreadPool& pool, const std::function<void(const ShapeBenchResult&)>& report) {
   ShapeBenchResult result;
   result.rotations = options.rotations;
   for (const std::string& precision : precisions) {
@@ -195,8 +195,8 @@ ShapeBenchResult RunShapeBench(const ShapeBenchOptions& options, const LabelledC
                  : StudyShapes<float>(net, set, options.rotations, options.seed, pool),
              result);
     }
+    report(result);
   }
-  return result;
 }
 
 std::string ShapeBenchResult::Markdown() const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -55,9 +56,10 @@ struct ShapeBenchResult {
   std::string Markdown() const;
 };
 
-// Trains a network in each of `precisions` and tries it on each set.
-ShapeBenchResult RunShapeBench(const ShapeBenchOptions& options, const LabelledClouds& clouds,
-                               const std::vector<ShapeSet>& sets,
-                               const std::vector<std::string>& precisions, ThreadPool& pool);
+// Trains a network in each of `precisions`, tries it on each set and then shows `report` what has
+// been measured so far.
+void RunShapeBench(const ShapeBenchOptions& options, const LabelledClouds& clouds,
+                   const std::vector<ShapeSet>& sets, const std::vector<std::string>& precisions,
+                   ThreadPool& pool, const std::function<void(const ShapeBenchResult&)>& report);
 
 }  // namespace dexremoe

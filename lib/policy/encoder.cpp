@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "nn/kernels.h"
+#include "shape/max_pool.h"
 
 namespace dexremoe {
 namespace {
@@ -21,7 +22,8 @@ std::vector<int> ExtrinsicsWidths(const PolicyStructure& s) {
 
 std::optional<Mlp> MakeCloud(ParamLayout& layout, const PolicyStructure& s) {
   if (!s.see_cloud) return std::nullopt;
-  return Mlp(layout, "encoder/cloud", Widths(s.feature_size, s.cloud_widths), false);
+  const int inputs = s.cloud_points > 0 ? 3 : s.feature_size;
+  return Mlp(layout, "encoder/cloud", Widths(inputs, s.cloud_widths), false);
 }
 
 }  // namespace
@@ -31,6 +33,7 @@ Encoder::Encoder(ParamLayout& layout, const PolicyStructure& s)
     : phys_size_(s.phys_size),
       phys_inputs_(s.phys_inputs()),
       feature_size_(s.feature_size),
+      cloud_points_(s.cloud_points),
       f_size_(s.f_size()),
       num_categories_(s.num_categories),
       shape_size_(s.shape_size()),
@@ -46,28 +49,41 @@ void Encoder::Initialize(Rng& rng, float* params) const {
 
 template <typename T>
 EncoderPass<T> Encoder::Carve(std::int64_t objects, std::int64_t n, Workspace<T>& work) const {
+  const std::int64_t cloud_rows = CloudRows(objects);
   EncoderPass<T> pass;
   pass.feature = work.Take(objects * feature_size_);
-  pass.cloud = work.Take(cloud_ ? cloud_->ActivationSize(objects) : 0);
+  pass.cloud = work.Take(cloud_ ? cloud_->ActivationSize(cloud_rows) : 0);
+  pass.pooled = work.Take(objects * f_size_);
+  pass.winner = work.template Take<std::int32_t>(objects * f_size_);
   pass.shape = work.Take(objects * shape_size_);
   pass.input = work.Take(n * extrinsics_.inputs());
   pass.extrinsics = work.Take(extrinsics_.ActivationSize(n));
   pass.dshape = work.Take(n * shape_size_);
   pass.df = work.template Take<Wide<T>>(objects * f_size_);
   pass.df_stored = work.Take(objects * f_size_);
-  pass.cloud_scratch = work.Take(cloud_ ? cloud_->ScratchSize(objects) : 0);
+  pass.df_points = work.Take(cloud_points_ > 0 ? cloud_rows * f_size_ : 0);
+  pass.cloud_scratch = work.Take(cloud_ ? cloud_->ScratchSize(cloud_rows) : 0);
   pass.extrinsics_scratch = work.Take(extrinsics_.ScratchSize(n));
   return pass;
 }
 
 template <typename T>
+const T* Encoder::CloudForward(const T* params, const ShapeInputs<Wide<T>>& shapes,
+                               EncoderPass<T>& pass) const {
+  const std::int64_t objects = shapes.objects;
+  Cast(objects * feature_size_, shapes.feature, pass.feature);
+  const T* mapped = cloud_->Forward(params, CloudRows(objects), pass.feature, pass.cloud);
+  if (cloud_points_ == 0) return mapped;
+  std::vector<int> begin;
+  for (std::int64_t k = 0; k <= objects; ++k) begin.push_back(static_cast<int>(k * cloud_points_));
+  MaxPoolForward(begin, f_size_, mapped, pass.pooled, pass.winner);
+  return pass.pooled;
+}
+
+template <typename T>
 void Encoder::ShapeForward(const T* params, const ShapeInputs<Wide<T>>& shapes,
                            EncoderPass<T>& pass) const {
-  const T* f = nullptr;
-  if (cloud_) {
-    Cast(shapes.objects * feature_size_, shapes.feature, pass.feature);
-    f = cloud_->Forward(params, shapes.objects, pass.feature, pass.cloud);
-  }
+  const T* f = cloud_ ? CloudForward(params, shapes, pass) : nullptr;
   T* shape = pass.shape;
   for (std::int64_t k = 0; k < shapes.objects; ++k) {
     if (cloud_) shape = std::copy_n(f + k * f_size_, f_size_, shape);
@@ -113,8 +129,15 @@ void Encoder::CloudBackward(const T* params, std::int64_t objects, const PolicyR
   for (std::int64_t k = 0; dshape != nullptr && k < objects; ++k)
     AddTo(f_size_, dshape + k * shape_size_, pass.df + k * f_size_);
   Cast(objects * f_size_, pass.df, pass.df_stored);
-  cloud_->Backward(params, objects, pass.feature, pass.cloud, pass.df_stored,
-                   static_cast<T*>(nullptr), grads, pass.cloud_scratch);
+  T* df = pass.df_stored;
+  const std::int64_t rows_of_cloud = CloudRows(objects);
+  if (cloud_points_ > 0) {
+    df = pass.df_points;
+    MaxPoolBackward(static_cast<int>(objects), static_cast<int>(rows_of_cloud), f_size_,
+                    pass.df_stored, pass.winner, df);
+  }
+  cloud_->Backward(params, rows_of_cloud, pass.feature, pass.cloud, df, static_cast<T*>(nullptr),
+                   grads, pass.cloud_scratch);
 }
 
 #define DEX_INSTANTIATE(T)                                                                         \

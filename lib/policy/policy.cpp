@@ -20,6 +20,9 @@ void CheckPositive(const char* field, const std::vector<int>& widths) {
 void CheckStructure(const PolicyStructure& s) {
   CheckPositive("sizes", {s.obs_size, s.phys_size, s.feature_size, s.num_categories, s.num_actions,
                           s.z_size});
+  if (s.cloud_points > 0 && s.feature_size != FeatureSize(s.cloud_points))
+    Fail("policy structure: feature_size: expected {} for {} points, found {}",
+         FeatureSize(s.cloud_points), s.cloud_points, s.feature_size);
   CheckPositive("cloud_widths", s.cloud_widths);
   CheckPositive("extrinsics_widths", s.extrinsics_widths);
   CheckPositive("hidden", s.hidden);

@@ -5,11 +5,11 @@
 
 namespace dexremoe {
 
-ShapeTable MakeShapeTable(const std::vector<TaskObject>& objects) {
+ShapeTable MakeShapeTable(const std::vector<TaskObject>& objects, int feature_size) {
   ShapeTable table;
   for (const TaskObject& object : objects) {
-    if (object.feature.size() != kShapeFeatureSize)
-      Fail("object {}: descriptor: expected {} values, found {}", object.name, kShapeFeatureSize,
+    if (std::ssize(object.feature) != feature_size)
+      Fail("object {}: descriptor: expected {} values, found {}", object.name, feature_size,
            object.feature.size());
     table.names.push_back(object.name);
     table.feature.insert(table.feature.end(), object.feature.begin(), object.feature.end());

@@ -1,4 +1,5 @@
-// The objects of a run as the networks see them: descriptor p and category, one row per object.
+// The objects of a run as the networks see them: descriptor p (or points) and category, one row per
+// object.
 #pragma once
 
 #include <string>
@@ -20,7 +21,8 @@ struct ShapeTable {
 };
 
 // Throws Error naming the object whose descriptor is missing or of another size.
-ShapeTable MakeShapeTable(const std::vector<TaskObject>& objects);
+ShapeTable MakeShapeTable(const std::vector<TaskObject>& objects,
+                          int feature_size = kShapeFeatureSize);
 
 // A table ready for a policy: normalised descriptors and categories.
 class ShapeRows {

@@ -11,6 +11,10 @@ GateColumns GateColumnsOf(const PolicyStructure& s) {
 void PolicyOptions::Register(Options& options) {
   options.Add("policy.hidden", &hidden, "width of the policy's hidden layers").Range(1, 8192);
   options.Add("policy.layers", &layers, "number of the policy's hidden layers").Range(1, 8);
+  options
+      .Add("policy.cloud_points", &cloud_points,
+           "points that mu_pc maps one by one, f being their maximum; 0: it maps PointNet++'s p")
+      .Range(0, 65536);
   options.Add("policy.cloud_widths", &cloud_widths, "layers of mu_pc; the last one is f")
       .Range(1, 8192);
   options.Add("policy.extrinsics_widths", &extrinsics_widths, "hidden layers of mu_e")
@@ -43,6 +47,8 @@ PolicyStructure PolicyOptions::Base(int obs_size, int phys_size, int num_actions
   s.obs_size = obs_size;
   s.phys_size = phys_size;
   s.num_actions = num_actions;
+  s.cloud_points = cloud_points;
+  s.feature_size = FeatureSize(cloud_points);
   s.cloud_widths = cloud_widths;
   s.extrinsics_widths = extrinsics_widths;
   s.z_size = z_size;

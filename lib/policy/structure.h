@@ -8,19 +8,25 @@
 
 namespace dexremoe {
 
+// Numbers that tell a policy an object's shape: p, or three of each point.
+inline int FeatureSize(int cloud_points) { return cloud_points > 0 ? 3 * cloud_points : 100; }
+
 struct PolicyStructure {
   std::string kind = "actor_critic";  // or another that MakePolicy knows
   // Inputs and outputs (paper, III-B).
-  int obs_size = 66;       // o_t
-  int phys_size = 23;      // e_phys
-  int feature_size = 100;  // p
-  int num_categories = 6;  // one-hot
+  int obs_size = 66;                  // o_t
+  int phys_size = 23;                 // e_phys
+  int feature_size = FeatureSize(0);  // p, or the coordinates of cloud_points points
+  int num_categories = 6;             // one-hot
   int num_actions = 11;
   // What of it reaches the networks beside o_t: these columns of e_phys (empty: all), mu_pc(p), and
   // the category.
   std::vector<int> phys_seen;
   bool see_cloud = true, see_category = true;
   // Encoders.
+  // NOTE(paper): its wording also fits a PointNet on sampled points. 0: mu_pc maps p to f.
+  // Otherwise it maps each of so many points, and f is the maximum over them.
+  int cloud_points = 0;
   std::vector<int> cloud_widths = {32, 32, 32};     // mu_pc; the last one is f
   std::vector<int> extrinsics_widths = {256, 128};  // hidden layers of mu_e
   int z_size = 66;
@@ -55,6 +61,7 @@ GateColumns GateColumnsOf(const PolicyStructure& structure);
 struct PolicyOptions {
   int hidden = 512;
   int layers = 2;
+  int cloud_points = 0;
   std::vector<int> cloud_widths = {32, 32, 32};
   std::vector<int> extrinsics_widths = {256, 128};
   int z_size = 66;

@@ -67,17 +67,18 @@ Image DatasetSheet(Renderer& renderer, const Fonts& fonts, const std::vector<Obj
   canvas.Text(split / 2.0, 1.5 * size, "training", title);
   canvas.Text((split + width) / 2.0, 1.5 * size, "out of distribution", title);
   int top = head;
-  for (int b = 0; b < int(bands.size()); ++b) {
-    canvas.Text(0.5 * size, top + size, bands[b].category, {size, ink::kFaint, Align::kLeft, true});
+  for (const Band& band : bands) {
+    canvas.Text(0.5 * size, top + size, band.category, {size, ink::kFaint, Align::kLeft, true});
     top += space;
     const auto paste = [&](const std::vector<int>& members, int left, int columns) {
       for (int i = 0; i < int(members.size()); ++i)
         canvas.Paste(left + i % columns * layout.cell, top + i / columns * layout.picture,
-                     CategoryPicture(renderer, source(members[i]), b, layout.cell, layout.picture));
+                     CategoryPicture(renderer, source(members[i]), band.category, layout.cell,
+                                     layout.picture));
     };
-    paste(bands[b].train, 0, layout.columns);
-    paste(bands[b].ood, split + layout.gap / 2, layout.rest);
-    top += layout.Lines(bands[b]) * layout.picture;
+    paste(band.train, 0, layout.columns);
+    paste(band.ood, split + layout.gap / 2, layout.rest);
+    top += layout.Lines(band) * layout.picture;
   }
   canvas.Box(split - 1, head / 3.0, 2, height - 2 * head / 3.0, ink::kFaint);
   return sheet;

@@ -38,8 +38,10 @@ Image StandingPicture(Renderer& renderer, std::vector<Item> items,
   return renderer.Draw(scene, camera, width, height);
 }
 
-// Soft enough for shading to show.
-Eigen::Vector3f ColorOf(int index) { return 0.8f * palette::Distinct(index).array() + 0.16f; }
+// Soft enough for shading to show; the same whichever other categories are on the sheet.
+Eigen::Vector3f ColorOf(const std::string& category) {
+  return 0.8f * palette::Distinct(CategoryIndex(category)).array() + 0.16f;
+}
 
 Image MeshPicture(Renderer& renderer, const SheetObject& object, const Eigen::Vector3f& color,
                   int width, int height) {
@@ -115,10 +117,9 @@ Image ObjectSheet(Renderer& renderer, const Fonts& fonts, const std::vector<Obje
   }
   Image sheet(cell * columns, row_top.back() + int(size), 255, 255, 255);
   Canvas canvas(sheet, fonts);
-  int index = 0;
   for (const Block& block : blocks) {
     const int left = block.column * cell, top = row_top[block.row];
-    const Eigen::Vector3f color = ColorOf(index++);
+    const Eigen::Vector3f color = ColorOf(block.category);
     canvas.Box(left + 0.04 * cell, top + heading - 0.45 * size, (block.columns - 0.08) * cell,
                std::max(1.5, 0.14 * size), color, 0.07 * size);
     canvas.Text(left + 0.05 * cell, top + heading - 0.95 * size,
@@ -137,9 +138,9 @@ Image ObjectSheet(Renderer& renderer, const Fonts& fonts, const std::vector<Obje
   return sheet;
 }
 
-Image CategoryPicture(Renderer& renderer, const SheetObject& object, int index, int width,
-                      int height) {
-  return MeshPicture(renderer, object, ColorOf(index), width, height);
+Image CategoryPicture(Renderer& renderer, const SheetObject& object, const std::string& category,
+                      int width, int height) {
+  return MeshPicture(renderer, object, ColorOf(category), width, height);
 }
 
 Image ObjectPicture(Renderer& renderer, const SheetObject& object, double explode, int width,

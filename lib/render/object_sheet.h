@@ -19,9 +19,9 @@ using ObjectSource = std::function<SheetObject(int)>;
 Image ObjectSheet(Renderer& renderer, const Fonts& fonts, const std::vector<ObjectEntry>& entries,
                   const ObjectSource& source, int columns, int width);
 
-// One object on a floor, in the colour of its category, `index` counted within kCategories.
-Image CategoryPicture(Renderer& renderer, const SheetObject& object, int index, int width,
-                      int height);
+// One object on a floor, in the colour of a category (one of kCategories).
+Image CategoryPicture(Renderer& renderer, const SheetObject& object, const std::string& category,
+                      int width, int height);
 
 // The whole data set: a band for every category, its training objects left of a line, those out of
 // distribution right of it. `entries` by category; source(i) draws entries[i]; height follows.

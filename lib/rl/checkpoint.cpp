@@ -147,6 +147,10 @@ TrainState ReadCheckpoint(const std::string& path) {
   return state;
 }
 
+PolicyStructure ReadPolicyStructure(const std::string& path) {
+  return ReadStructure(H5Reader(path, kCheckpointFormat));
+}
+
 void CheckSameOptions(const std::string& path, const std::string& options) {
   const H5Reader file(path, kCheckpointFormat);
   std::istringstream then(file.Attribute("options")), now(options);

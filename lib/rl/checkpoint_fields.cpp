@@ -51,6 +51,7 @@ void WriteStructure(H5Writer& file, const PolicyStructure& s) {
   WriteNumber(file, "feature_size", s.feature_size);
   WriteNumber(file, "num_categories", s.num_categories);
   WriteNumber(file, "num_actions", s.num_actions);
+  WriteNumber(file, "cloud_points", s.cloud_points);
   WriteWidths(file, "cloud_widths", s.cloud_widths);
   WriteWidths(file, "extrinsics_widths", s.extrinsics_widths);
   WriteNumber(file, "z_size", s.z_size);
@@ -78,6 +79,7 @@ PolicyStructure ReadStructure(const H5Reader& file) {
   s.feature_size = ReadNumber(file, "feature_size");
   s.num_categories = ReadNumber(file, "num_categories");
   s.num_actions = ReadNumber(file, "num_actions");
+  if (file.Has("structure/cloud_points")) s.cloud_points = ReadNumber(file, "cloud_points");
   s.cloud_widths = ReadWidths(file, "cloud_widths");
   s.extrinsics_widths = ReadWidths(file, "extrinsics_widths");
   s.z_size = ReadNumber(file, "z_size");

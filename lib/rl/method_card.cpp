@@ -17,7 +17,8 @@ std::string InputsOf(const std::string& method, const PolicyStructure& s) {
     text += ", e_phys";
   else
     text += fmt::format(", {} of {} numbers of e_phys", s.phys_seen.size(), s.phys_size);
-  if (s.see_cloud) text += ", shape";
+  if (s.see_cloud)
+    text += s.cloud_points > 0 ? fmt::format(", {} points", s.cloud_points) : ", shape";
   if (s.see_category) text += ", category";
   if (s.kind == "residual") text += ", base action";
   return method == "dr" || method == "adr" ? text + " (noisy pose, goal and joints)" : text;

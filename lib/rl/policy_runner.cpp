@@ -36,7 +36,7 @@ PolicyRunner::PolicyRunner(const std::string& path, const std::vector<TaskObject
   // Whatever it was trained in: a file gives the same actions on every machine.
   m.state.structure.precision = "f32";
   m.policy = MakePolicy<float>(m.state.structure);
-  const ShapeTable table = MakeShapeTable(objects);
+  const ShapeTable table = MakeShapeTable(objects, m.state.structure.feature_size);
   m.shapes =
       std::make_unique<ShapeRows>(table, m.state.normalizers.feature, m.state.normalizers.clip,
                                   m.state.structure.num_categories);

@@ -15,7 +15,8 @@ class PolicyRunner {
  public:
   // Reads any dexremoe.checkpoint (base, expert or gate). `objects` need their features loaded;
   // they may differ from those of the training (out of distribution) and may be empty when only
-  // WeightsOf is used. Computes in float32, also what was trained in bfloat16. `pool` must outlive
+  // WeightsOf is used. Their features are what ReadPolicyStructure(path).cloud_points asks for.
+  // Computes in float32, also what was trained in bfloat16. `pool` must outlive
   // the runner. Throws Error naming file and field.
   PolicyRunner(const std::string& path, const std::vector<TaskObject>& objects, ThreadPool& pool);
   ~PolicyRunner();
@@ -42,8 +43,8 @@ class PolicyRunner {
   int gates() const;
   // [objects, gates()], rows sum to one; empty without a gate.
   const std::vector<float>& GateWeights() const;
-  // Weights for other descriptors: feature [m, 100] (unnormalised), category [m] -> [m, gates()].
-  // Used with rotated clouds (paper, figure 8).
+  // Weights for other descriptors: feature [m, feature_size] (unnormalised), category [m] -> [m,
+  // gates()]. Used with rotated clouds (paper, figure 8).
   std::vector<float> WeightsOf(const std::vector<float>& feature,
                                const std::vector<int>& category) const;
 

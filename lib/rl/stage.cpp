@@ -182,7 +182,7 @@ TrainState RunStage(const StageOptions& stage, const Options& options, const Sta
   if (ranks.rank() == 0) lock.emplace(stage.out);
   ThreadPool pool(Workers(stage, ranks));
   const std::vector<ObjectEntry> entries = SelectObjects(stage, kind);
-  const std::vector<TaskObject> objects = LoadObjects(entries, {});
+  const std::vector<TaskObject> objects = LoadObjects(entries, {.cloud_points = kind.cloud_points});
   const HandModel hand = LoadHand(stage.hand);
   const int envs = EnvsPerRank(stage, ranks);
   ReorientBatch batch(stage.task, stage.sim, hand, objects, envs, stage.seed, pool);
@@ -190,7 +190,7 @@ TrainState RunStage(const StageOptions& stage, const Options& options, const Sta
   ReorientEnv env(batch);
   const StageStart start = {stage.ppo,
                             {stage.task.goal_angle, stage.task.velocity_tolerance},
-                            MakeShapeTable(objects),
+                            MakeShapeTable(objects, FeatureSize(kind.cloud_points)),
                             stage.seed};
   Trainer trainer(stage.ppo, start.task, FirstState(stage, options, kind, start, env, ranks), env,
                   pool, ranks, stage.adr);

@@ -44,6 +44,7 @@ struct StageKind {
   std::vector<std::string> categories;  // objects to train on; empty for all
   std::vector<std::string> inputs;      // checkpoints it starts from
   std::string first_object;             // put first of the list; empty: as listed
+  int cloud_points = 0;                 // of the policy's structure
   // The first state; the sizes are those of the environments.
   std::function<TrainState(const StageStart& start, int obs_size, int phys_size, int num_actions)>
       start;

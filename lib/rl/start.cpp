@@ -96,7 +96,8 @@ TrainState StartFresh(const StageStart& start, const PolicyOptions& options,
   state.normalizers.phys = RunningMoments(structure.phys_size);
   state.normalizers.feature = RunningMoments(structure.feature_size);
   state.normalizers.clip = start.ppo.obs_clip;
-  UpdateMoments(start.table.objects(), start.table.feature.data(), state.normalizers.feature);
+  if (structure.cloud_points == 0)  // points are of unit size, and one network maps them all
+    UpdateMoments(start.table.objects(), start.table.feature.data(), state.normalizers.feature);
   return state;
 }
 

@@ -7,6 +7,8 @@
 #include "geometry/object_files.h"
 #include "io/atomic_file.h"
 #include "io/csv.h"
+#include "shape/cloud.h"
+#include "shape/grouping.h"
 #include "shape/shape_files.h"
 #include "task/grasp_file.h"
 
@@ -24,18 +26,22 @@ SimObject MakeSimObject(const ObjectMesh& mesh, ObjectParts parts) {
   return object;
 }
 
+std::vector<float> DescriptorFeature(const std::string& folder) {
+  const std::string path = folder + "/shape.h5";
+  std::vector<float> feature = ReadShape(path).feature;
+  if (feature.size() != kShapeFeatureSize)
+    Fail("{}: feature: expected {} values, found {}", path, kShapeFeatureSize, feature.size());
+  return feature;
+}
+
 TaskObject LoadObject(const ObjectEntry& entry, const ObjectSetNeeds& needs) {
   TaskObject object = LoadSimObject(entry.folder + "/mesh.h5", entry.folder + "/parts.h5");
   object.name = object.sim.name = entry.name;
   object.category = CategoryIndex(entry.category);
   object.split = entry.split;
-  if (needs.feature) {
-    const std::string path = entry.folder + "/shape.h5";
-    object.feature = ReadShape(path).feature;
-    if (object.feature.size() != kShapeFeatureSize)
-      Fail("{}: feature: expected {} values, found {}", path, kShapeFeatureSize,
-           object.feature.size());
-  }
+  if (needs.feature)
+    object.feature = needs.cloud_points > 0 ? PointsFeature(entry.folder, needs.cloud_points)
+                                            : DescriptorFeature(entry.folder);
   if (needs.grasps) {
     object.grasps = ReadGrasps(entry.grasps).grasps;
     if (object.grasps.empty())
@@ -45,6 +51,18 @@ TaskObject LoadObject(const ObjectEntry& entry, const ObjectSetNeeds& needs) {
 }
 
 }  // namespace
+
+std::vector<float> PointsFeature(const std::string& folder, int count) {
+  const std::string path = folder + "/cloud.h5";
+  std::vector<Eigen::Vector3f> points;
+  for (const Eigen::Vector3d& p : ReadCloud(path).points) points.push_back(p.cast<float>());
+  if (std::ssize(points) < count)
+    Fail("{}: points: expected at least {}, found {}", path, count, points.size());
+  points = ToUnitSphere(points);
+  std::vector<float> feature;
+  for (int i = 0; i < count; ++i) feature.insert(feature.end(), points[i].begin(), points[i].end());
+  return feature;
+}
 
 int CategoryIndex(const std::string& name) {
   for (int i = 0; i < kNumCategories; ++i)

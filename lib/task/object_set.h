@@ -48,8 +48,10 @@ struct TaskObject {
   int category = 0;
   std::string split;
   SimObject sim;
-  double mass = 0;             // nominal, kg
-  std::vector<float> feature;  // [kShapeFeatureSize]; empty when not loaded
+  double mass = 0;  // nominal, kg
+  // Descriptor [kShapeFeatureSize], or points [3 * ObjectSetNeeds::cloud_points]; empty when not
+  // loaded.
+  std::vector<float> feature;
   // [kNumCategories] what policies see of the category; empty: the label, one-hot.
   std::vector<float> category_input;
   std::vector<Grasp> grasps;  // empty when not loaded
@@ -61,9 +63,13 @@ TaskObject LoadSimObject(const std::string& mesh_path, const std::string& parts_
 struct ObjectSetNeeds {
   bool feature = true;
   bool grasps = true;
+  int cloud_points = 0;  // above 0, the feature is not the descriptor but so many points
 };
-// Reads mesh.h5 and parts.h5 of every entry, shape.h5 and the grasps where needed. Throws Error
-// naming the file that is missing or wrong.
+// The first `count` points of FOLDER/cloud.h5, which are the farthest from each other, with the
+// whole cloud scaled to the unit sphere: x, y, z of each. Throws Error when there are fewer.
+std::vector<float> PointsFeature(const std::string& folder, int count);
+// Reads mesh.h5 and parts.h5 of every entry, shape.h5 or cloud.h5 and the grasps where needed.
+// Throws Error naming the file that is missing or wrong.
 std::vector<TaskObject> LoadObjects(const std::vector<ObjectEntry>& entries,
                                     const ObjectSetNeeds& needs);
 

@@ -92,9 +92,12 @@ TEST(ShapeBench, ShowsEverySetInEveryPrecision) {
   options.train.epoch_clouds = 4;
   const ShapeSet set = SticksAndBall();
   ThreadPool pool(1);
-  const auto result = RunShapeBench(options, {set.clouds, {}, {}}, {set}, {"f32"}, pool);
-  EXPECT_THAT(result.Markdown(), testing::HasSubstr("sticks and ball (3), f32"));
-  EXPECT_THAT(CsvOf(result.measurements), testing::HasSubstr("training,f32,processor s,"));
+  std::vector<ShapeBenchResult> reports;
+  RunShapeBench(options, {set.clouds, {}, {}}, {set}, {"f32"}, pool,
+                [&](const ShapeBenchResult& result) { reports.push_back(result); });
+  ASSERT_EQ(reports.size(), 1u);
+  EXPECT_THAT(reports[0].Markdown(), testing::HasSubstr("sticks and ball (3), f32"));
+  EXPECT_THAT(CsvOf(reports[0].measurements), testing::HasSubstr("training,f32,processor s,"));
 }
 
 }  // namespace

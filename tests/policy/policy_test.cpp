@@ -26,6 +26,37 @@ TEST(Policy, GradientsMatchCentralDifferencesWhateverIsSeen) {
   CheckGradients(s);
 }
 
+PolicyStructure SmallOnPoints() {
+  PolicyStructure s = SmallBase();
+  s.cloud_points = 5;
+  s.feature_size = FeatureSize(s.cloud_points);
+  return s;
+}
+
+TEST(Policy, GradientsThroughPointsMatchCentralDifferences) {
+  CheckGradients(SmallOnPoints());
+  PolicyStructure mixture = SmallMixture("cloud");
+  mixture.cloud_points = 5;
+  mixture.feature_size = FeatureSize(5);
+  CheckGradients(mixture);
+}
+
+TEST(Policy, TheOrderOfPointsAndRepeatedPointsDoNotMatter) {
+  const PolicyStructure s = SmallOnPoints();
+  const auto policy = MakePolicy<double>(s);
+  Problem<double> problem(s, 6, 4);
+  const std::vector<double> params = RandomParams(*policy);
+  double* object = problem.feature.data() + 15;
+  std::copy_n(object, 3, object + 12);  // the first of five points is also the last
+  const double before = LossOf(*policy, problem, params);
+  std::swap_ranges(object, object + 3, object + 6);
+  EXPECT_EQ(LossOf(*policy, problem, params), before);
+  std::copy_n(object + 3, 3, object + 12);  // now the second is
+  EXPECT_EQ(LossOf(*policy, problem, params), before);
+  for (int i = 0; i < 15; ++i) object[i] += 1;
+  EXPECT_NE(LossOf(*policy, problem, params), before);
+}
+
 // Changes what the policy must not see; nothing else may change with it.
 TEST(Policy, HiddenInputsDoNotMatter) {
   PolicyStructure s = SmallBase();

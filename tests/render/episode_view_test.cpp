@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 
@@ -243,6 +244,19 @@ TEST_F(EpisodeViewTest, ASheetGivesEveryObjectACellUnderItsCategory) {
   const int row = sheet.height / 3;
   EXPECT_LT(Lightness(sheet, 50, row - 55), 240);
   EXPECT_EQ(Lightness(sheet, 250, row - 55), 255);  // the third cell of the first row is empty
+}
+
+TEST_F(EpisodeViewTest, ACategoryHasItsColourWhicheverOthersAreOnTheSheet) {
+  const auto ball_color = [&](const std::vector<std::string>& categories) {
+    std::vector<ObjectEntry> entries;
+    for (const std::string& category : categories)
+      entries.push_back({"ball", category, "train", "", "", ""});
+    const Image sheet = ObjectSheet(renderer_, fonts_, entries, NamedBall, 1, 100);
+    const auto* pixel = sheet.at(50, sheet.height - 62);  // in the last block's only picture
+    return std::array<int, 3>{pixel[0], pixel[1], pixel[2]};
+  };
+  EXPECT_EQ(ball_color({"train"}), ball_color({"animal", "train"}));
+  EXPECT_NE(ball_color({"train"}), ball_color({"animal"}));
 }
 
 TEST_F(EpisodeViewTest, PartsAreShownBesideTheMesh) {

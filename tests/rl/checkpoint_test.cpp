@@ -67,6 +67,20 @@ TEST(Checkpoint, UntrainedStateCanBeStored) {
   EXPECT_TRUE(read.adam.m.empty());
 }
 
+TEST(Checkpoint, AFileSaysHowManyPointsItsPolicySees) {
+  const TemporaryFolder folder("points");
+  for (const int points : {0, 7}) {
+    PolicyOptions options = ToyPolicy();
+    options.cloud_points = points;
+    StageStart start = ToyStart();
+    start.table.feature.assign(start.table.objects() * FeatureSize(points), 0.5f);
+    const TrainState state = StartBase(start, options, 4, 2, 2);
+    WriteCheckpoint(folder / "a.h5", state, ToyProvenance());
+    EXPECT_EQ(ReadPolicyStructure(folder / "a.h5").cloud_points, points);
+    EXPECT_EQ(ReadCheckpoint(folder / "a.h5").params, state.params);
+  }
+}
+
 TEST(Checkpoint, OtherFormatsAndVersionsAreNamed) {
   const TemporaryFolder folder("format");
   const std::string path = folder / "a.h5";

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "io/atomic_file.h"
+#include "shape/cloud.h"
 #include "task/grasp_file.h"
 #include "task/object_choice.h"
 #include "task_fixture.h"
@@ -66,6 +67,21 @@ TEST(ObjectList, BadLinesAreNamed) {
               AllOf(HasSubstr("train or ood"), HasSubstr("test")));
   EXPECT_THAT(complaint("a,head,ood,m,f,g\na,head,ood,m,f,g\n"), HasSubstr("again"));
   EXPECT_THAT(complaint(""), HasSubstr("none"));
+}
+
+TEST(PointsFeature, HoldsTheFirstPointsOfACloudOnTheUnitSphere) {
+  fs::create_directories(TestPath("cloud"));
+  PointCloud cloud;  // its centroid is (1, 2, 3) m, its radius 0.5 m
+  for (const Eigen::Vector3d& p :
+       {Eigen::Vector3d(0.5, 0, 0), {-0.5, 0, 0}, {0, 0, 0.25}, {0, 0, -0.25}})
+    cloud.points.push_back(p + Eigen::Vector3d(1, 2, 3));
+  cloud.normals.assign(4, Eigen::Vector3d::UnitX());
+  WriteCloud(TestPath("cloud") + "/cloud.h5", cloud, {"test", "", 1, {}});
+  EXPECT_THAT(PointsFeature(TestPath("cloud"), 3),
+              testing::Pointwise(testing::FloatNear(1e-5),
+                                 {1.f, 0.f, 0.f, -1.f, 0.f, 0.f, 0.f, 0.f, 0.5f}));
+  EXPECT_THAT(Complaint([] { PointsFeature(TestPath("cloud"), 5); }),
+              AllOf(HasSubstr("cloud.h5"), HasSubstr("at least 5, found 4")));
 }
 
 TEST(Grasps, ReadBackWhatWasWrittenBitForBit) {
