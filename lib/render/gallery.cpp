@@ -45,15 +45,6 @@ Image DrawSheet(Renderer& renderer, const Fonts& fonts, SheetKind kind,
   return ObjectSheet(renderer, fonts, entries, source, columns, width);
 }
 
-Image DrawDataset(Renderer& renderer, const Fonts& fonts, const std::vector<ObjectEntry>& entries,
-                  const SheetOptions& options, const SheetProgress& progress) {
-  const ObjectSource source = [&](int i) {
-    progress(i, entries[i].name);
-    return ReadSheetObject(entries[i], options.up, SheetKind::kSources);
-  };
-  return DatasetSheet(renderer, fonts, entries, source, options.width > 0 ? options.width : 1800);
-}
-
 std::vector<GalleryPage> PagesOf(const std::vector<ObjectEntry>& entries, int per_page) {
   std::vector<GalleryPage> pages;
   const int count = static_cast<int>(entries.size());

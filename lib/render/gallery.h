@@ -29,10 +29,6 @@ Image DrawSheet(Renderer& renderer, const Fonts& fonts, SheetKind kind,
                 const std::vector<ObjectEntry>& entries, const SheetOptions& options,
                 const SheetProgress& progress);
 
-// All of them by category and split, from their source meshes (DatasetSheet).
-Image DrawDataset(Renderer& renderer, const Fonts& fonts, const std::vector<ObjectEntry>& entries,
-                  const SheetOptions& options, const SheetProgress& progress);
-
 // Entries first .. first + count - 1, all of one category.
 struct GalleryPage {
   std::string name;  // "animal", or "animal_2" where a category takes more than one page
