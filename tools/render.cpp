@@ -123,13 +123,7 @@ void RenderTool::RunSheets() const {
   };
   Renderer renderer(render);
   const Fonts fonts;
-  if (kind == "dataset") {
-    const ObjectSource source = [&](int i) {
-      progress.Update(i, entries[i].name);
-      return ReadSheetObject(entries[i], sheet.up, SheetKind::kSources);
-    };
-    WritePng(out, DatasetSheet(renderer, fonts, entries, source, Width(1800)));
-  } else if (kind == "gallery")
+  if (kind == "gallery")
     DrawGallery(renderer, fonts, entries, sheet, out, show);
   else
     WritePng(out, DrawSheet(renderer, fonts, SheetKindNamed(kind), entries, sheet, show));

@@ -37,6 +37,8 @@ Image DrawSheet(Renderer& renderer, const Fonts& fonts, SheetKind kind,
     progress(done++, entries[i].name);
     return ReadSheetObject(entries[i], options.up, kind);
   };
+  if (kind == SheetKind::kDataset)
+    return DatasetSheet(renderer, fonts, entries, source, options.width > 0 ? options.width : 1800);
   const bool parts = kind == SheetKind::kParts;
   const int columns = options.columns > 0 ? options.columns : parts ? 3 : 6;
   const int width = options.width > 0 ? options.width : columns * (parts ? 500 : 240);

@@ -12,7 +12,7 @@ namespace dexremoe {
 
 struct SheetOptions {
   int columns = 0;          // cells side by side; 0 takes 6, of parts 3
-  int width = 0;            // pixels; 0 takes 240 a cell, of parts 500
+  int width = 0;            // pixels; 0 takes 240 a cell, of parts 500, of a dataset 1800 in all
   double explode = 0.25;    // how far parts are moved apart, relative
   std::string up = "auto";  // as UpAxis takes it
   void Register(Options& options);
@@ -24,7 +24,7 @@ using SheetProgress = std::function<void(int done, const std::string& name)>;
 // Sorted by category, else in the order they had.
 std::vector<ObjectEntry> ByCategory(std::vector<ObjectEntry> entries);
 
-// The entries, sorted by category, on one sheet.
+// The entries, sorted by category, on one sheet: DatasetSheet, PartsSheet or ObjectSheet.
 Image DrawSheet(Renderer& renderer, const Fonts& fonts, SheetKind kind,
                 const std::vector<ObjectEntry>& entries, const SheetOptions& options,
                 const SheetProgress& progress);

@@ -36,6 +36,7 @@ TriMesh CloudBeads(const std::string& path) {
 SheetKind SheetKindNamed(const std::string& name) {
   if (name == "objects") return SheetKind::kMeshes;
   if (name == "sources") return SheetKind::kSources;
+  if (name == "dataset") return SheetKind::kDataset;
   if (name == "parts") return SheetKind::kParts;
   DEX_CHECK_EQ(name, "clouds");
   return SheetKind::kClouds;
@@ -85,7 +86,7 @@ SheetObject ReadSheetObject(const ObjectEntry& entry, const std::string& up, She
   object.name = entry.name;
   object.category = entry.category;
   object.up = UpAxis(up, entry.mesh);
-  if (kind == SheetKind::kSources)
+  if (kind == SheetKind::kSources || kind == SheetKind::kDataset)
     object.mesh = LoadMesh(entry.mesh);
   else if (kind == SheetKind::kClouds)
     object.mesh = CloudBeads(entry.folder + "/cloud.h5");

@@ -18,10 +18,10 @@ struct SheetObject {
   std::string detail;                             // second line of the caption; may be empty
 };
 
-// What of an object a sheet shows; kSources: the source mesh as it is, before anything is made of
-// it.
-enum class SheetKind { kMeshes, kSources, kParts, kClouds };
-// "objects", "sources", "parts" or "clouds".
+// What of an object a sheet shows; kSources and kDataset: the source mesh as it is, before anything
+// is made of it.
+enum class SheetKind { kMeshes, kSources, kDataset, kParts, kClouds };
+// "objects", "sources", "dataset", "parts" or "clouds".
 SheetKind SheetKindNamed(const std::string& name);
 
 // From the entry's folder mesh.h5, with its parts.h5 beside it, or in its place cloud.h5 as beads

@@ -99,7 +99,8 @@ TEST(Layers, TheLibraryNeitherExitsNorPrintsNorUsesGlobalRandomNumbers) {
   const std::regex forbidden(
       R"((std::cout|[^a-zA-Z_:.>](exit|_exit|rand|srand|printf|puts)\s*\(|std::(exit|rand|srand|printf|puts)\b|random_device))");
   for (const fs::path& file : Sources("lib")) {
-    if (file == "lib/base/options.cpp") continue;  // RunTool is the tools' main function
+    if (file == "lib/base/options.cpp") continue;   // RunTool is the tools' main function
+    if (file == "lib/base/confined.cpp") continue;  // ends the process that it has forked
     std::istringstream lines(Slurp(file));
     std::string line;
     for (int number = 1; std::getline(lines, line); ++number) {
