@@ -35,6 +35,13 @@ double AddressSpace() {
   return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
+// What the parent holds open, locks above all, must not outlive it here.
+void CloseAllBut(int pipe) {
+  const auto keep = static_cast<unsigned>(pipe);
+  if (keep > 3) close_range(3, keep - 1, 0);
+  close_range(keep + 1, ~0U, 0);
+}
+
 void Confine(const ConfinedLimits& limits) {
   for (const int signal : {SIGINT, SIGTERM, SIGALRM, SIGXCPU, SIGPIPE})
     std::signal(signal, SIG_DFL);
@@ -64,6 +71,7 @@ std::string Outcome(const std::string& label, const ConfinedLimits& limits,
 
 [[noreturn]] void RunChild(int pipe, const std::string& label, const ConfinedLimits& limits,
                            const std::function<std::string()>& work) {
+  CloseAllBut(pipe);
   Confine(limits);
   const std::string outcome = Outcome(label, limits, work);
   for (std::size_t sent = 0; sent < outcome.size();) {

@@ -1,7 +1,9 @@
 #include "base/confined.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <csignal>
@@ -29,6 +31,16 @@ TEST(RunConfined, ChangesNothingHere) {
     return std::string();
   });
   EXPECT_EQ(value, 1);
+}
+
+TEST(RunConfined, HoldsNothingOpenThatTheCallerHolds) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const std::string open = RunConfined("work", {}, [&] {
+    return std::to_string((fcntl(ends[0], F_GETFD) >= 0) + (fcntl(ends[1], F_GETFD) >= 0));
+  });
+  EXPECT_EQ(open, "0");
+  for (const int end : ends) close(end);
 }
 
 TEST(RunConfined, PassesErrorsOn) {
