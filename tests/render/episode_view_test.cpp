@@ -166,6 +166,10 @@ TEST_F(EpisodeViewTest, TheHandPictureNeedsOneAnglePerJoint) {
 }
 
 TEST_F(EpisodeViewTest, TheHandStandsBesideItsParts) {
+  Collider palm;
+  palm.shape = ColliderShape::kBox;
+  palm.half_size = Eigen::Vector3d::Constant(0.03);
+  hand_.colliders = {palm};
   EXPECT_THROW(HandPartsPicture(renderer_, hand_, {0, 0}, 128, 48), Error);
   const Image both = HandPartsPicture(renderer_, hand_, {0.3}, 128, 48);
   const Image left = HandPicture(renderer_, hand_, {0.3}, false, 64, 48);
