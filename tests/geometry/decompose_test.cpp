@@ -141,10 +141,16 @@ TEST(CutBest, LaysADeepSlitOpen) {
   const Concavity concavity(solid, 0.03 * BoundsOf(block).Size().norm(), 0.02 * solid.volume);
   std::vector<int> all(solid.voxels.size());
   std::iota(all.begin(), all.end(), 0);
+  const auto left_over = [&](const Cluster& cluster) {
+    double sum = 0;
+    for (const Cluster& piece : CutBest(solid, concavity, cluster, 0.05)) sum += piece.concavity;
+    return sum;
+  };
   const Cluster whole = MakeCluster(solid, concavity, all);
-  double left_over = 0;
-  for (const Cluster& piece : CutBest(solid, concavity, whole, 0.05)) left_over += piece.concavity;
-  EXPECT_LT(left_over, 0.1 * whole.concavity);
+  Cluster by_volume_alone = whole;
+  by_volume_alone.deepest = -1;
+  EXPECT_GT(left_over(by_volume_alone), 0.5 * whole.concavity);
+  EXPECT_LT(left_over(whole), 0.25 * whole.concavity);
 }
 
 TEST(DecomposeConvex, ThinGapsCountWhereConcavityWeighs) {
