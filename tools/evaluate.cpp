@@ -10,6 +10,7 @@
 #include "eval/evaluation.h"
 #include "eval/report.h"
 #include "eval/trace.h"
+#include "rl/checkpoint.h"
 #include "rl/policy_runner.h"
 
 namespace {
