@@ -54,7 +54,7 @@ class Gallery : public testing::Test {
     object.name = "ball";
     object.category = "head";
     WriteObjectMesh(folder_ + "/mesh.h5", object, {"test", "", 1, {}});
-    WriteParts(folder_ + "/parts.h5", {{BallOf(0.02, 12), CubeOf(0.02)}, 1, {}, 0.1},
+    WriteParts(folder_ + "/parts.h5", {{BallOf(0.02, 12), CubeOf(0.02)}, 1, 0.1},
                {"test", "", 1, {}});
     CloudOptions options;
     options.points = 200;
