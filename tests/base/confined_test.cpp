@@ -1,8 +1,8 @@
 #include "base/confined.h"
 
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -36,10 +36,14 @@ TEST(RunConfined, ChangesNothingHere) {
 TEST(RunConfined, HoldsNothingOpenThatTheCallerHolds) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
-  const std::string open = RunConfined("work", {}, [&] {
-    return std::to_string((fcntl(ends[0], F_GETFD) >= 0) + (fcntl(ends[1], F_GETFD) >= 0));
-  });
-  EXPECT_EQ(open, "0");
+  const auto is_pipe = [](int descriptor) {
+    struct stat facts;
+    return fstat(descriptor, &facts) == 0 && S_ISFIFO(facts.st_mode);
+  };
+  ASSERT_TRUE(is_pipe(ends[0]) && is_pipe(ends[1]));
+  const std::string pipes =
+      RunConfined("work", {}, [&] { return std::to_string(is_pipe(ends[0]) + is_pipe(ends[1])); });
+  EXPECT_EQ(pipes, "0");
   for (const int end : ends) close(end);
 }
 
