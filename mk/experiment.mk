@@ -262,6 +262,7 @@ $(OUT)/figures/episode.mp4: $(OUT)/eval/gate.h5 | $(BIN)/render
 
 # --- Publishing ---------------------------------------------------------------------------------
 
+GROWN_RUNS = $(patsubst results/%/eval/growth/done,%,$(wildcard results/*/eval/growth/done))
 LEARN_COLUMNS := successes_per_600,drop_rate,mean_angle,goal_angle
 
 .PHONY: publish
@@ -271,8 +272,11 @@ publish:  ## copy the tables and figures of a finished run to results/tables and
 	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png hand_parts.png curves.png per_object.png tsne.png strip.png baselines.png adr.png) paper_figs/
 	@for run in cube six; do for table in results/$$run*/tables/learned.md; do [ ! -f $$table ] || \
 	  cp $$table results/tables/learned_$$(basename $$(dirname $$(dirname $$table))).md; done; done
-	@runs=$$(ls -d results/{cube,six,desk*}/curves/base.csv 2>/dev/null | cut -d/ -f2 || true); \
+	@runs=$$(ls -d results/{cube,six,desk}*/curves/base.csv 2>/dev/null | cut -d/ -f2 || true); \
 	[ -z "$$runs" ] || for x in samples seconds; do \
 	  $(BIN)/plot --kind=curves --x=$$x --columns=$(LEARN_COLUMNS) --out=$(OUT)/figures/learning_$$x \
 	    --labels=$$(echo $$runs | tr ' ' ,) --in=$$(printf 'results/%s/curves/base.csv\n' $$runs | paste -sd,); \
 	  cp $(OUT)/figures/learning_$$x.png paper_figs/; done
+	$(if $(call grown,$(GROWN_RUNS)),$(BIN)/plot --kind=growth --in=$(call commas,$(call grown,$(GROWN_RUNS))) \
+	  --labels=$(call commas,$(call grown_labels,$(GROWN_RUNS))) --out=$(OUT)/figures/growth && \
+	  cp $(OUT)/figures/growth.png paper_figs/)
