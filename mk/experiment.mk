@@ -269,7 +269,7 @@ LEARN_COLUMNS := successes_per_600,drop_rate,mean_angle,goal_angle
 publish:  ## copy the tables and figures of a finished run to results/tables and paper_figs
 	@mkdir -p results/tables paper_figs
 	cp $(foreach t,table1 categories,$(addprefix $(OUT)/tables/$(t).,md csv tex)) $(OUT)/tables/methods.md results/tables/
-	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png hand_parts.png curves.png per_object.png tsne.png strip.png baselines.png adr.png) paper_figs/
+	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png hand_parts.png curves.png per_object.png tsne.png strip.png baselines.png) paper_figs/
 	@for run in cube six; do for table in results/$$run*/tables/learned.md; do [ ! -f $$table ] || \
 	  cp $$table results/tables/learned_$$(basename $$(dirname $$(dirname $$table))).md; done; done
 	@runs=$$(ls -d results/{cube,six,desk}*/curves/base.csv 2>/dev/null | cut -d/ -f2 || true); \

@@ -1,20 +1,46 @@
 #include <dnnl.h>
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <vector>
 
 #include "base/check.h"
 #include "nn/layers.h"
 #include "nn/one_thread.h"
 
 namespace dexremoe {
-template <>
-void Gemm<float>(bool transpose_a, bool transpose_b, std::int64_t m, std::int64_t n, std::int64_t k,
-                 float alpha, const float* a, std::int64_t lda, const float* b, std::int64_t ldb,
-                 float beta, float* c, std::int64_t ldc) {
+namespace {
+
+// For fewer rows sgemm takes other ways and rounds otherwise. Filled up to this many, what comes
+// out for a row does not depend on how many others come with it.
+constexpr std::int64_t kFewRows = 64;
+
+void Sgemm(bool transpose_a, bool transpose_b, std::int64_t m, std::int64_t n, std::int64_t k,
+           float alpha, const float* a, std::int64_t lda, const float* b, std::int64_t ldb,
+           float beta, float* c, std::int64_t ldc) {
   KeepToOneThread();
   const dnnl_status_t status = dnnl_sgemm(transpose_a ? 'T' : 'N', transpose_b ? 'T' : 'N', m, n, k,
                                           alpha, a, lda, b, ldb, beta, c, ldc);
   DEX_CHECK_EQ(static_cast<int>(status), static_cast<int>(dnnl_success));
+}
+
+}  // namespace
+
+template <>
+void Gemm<float>(bool transpose_a, bool transpose_b, std::int64_t m, std::int64_t n, std::int64_t k,
+                 float alpha, const float* a, std::int64_t lda, const float* b, std::int64_t ldb,
+                 float beta, float* c, std::int64_t ldc) {
+  if (transpose_a || m >= kFewRows)
+    return Sgemm(transpose_a, transpose_b, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc);
+  thread_local std::vector<float> rows, out;
+  rows.assign(kFewRows * k, 0.0f);
+  out.assign(kFewRows * n, 0.0f);
+  for (std::int64_t i = 0; i < m; ++i) {
+    std::copy_n(a + i * lda, k, rows.begin() + i * k);
+    if (beta != 0) std::copy_n(c + i * ldc, n, out.begin() + i * n);
+  }
+  Sgemm(false, transpose_b, kFewRows, n, k, alpha, rows.data(), k, b, ldb, beta, out.data(), n);
+  for (std::int64_t i = 0; i < m; ++i) std::copy_n(out.begin() + i * n, n, c + i * ldc);
 }
 
 // Only gradient checks run in double, so clarity comes before speed.
