@@ -26,6 +26,7 @@ constexpr Axis kAxes[] = {
     {"successes_per_600", "successes per 600 steps", 1, false},
     {"explained_variance", "explained variance", 1, false},
     {"goal_angle", "widest goal (rad)", 1, false},
+    {"routing_entropy", "entropy of the routing (nats)", 1, false},
     {"velocity_tolerance", "speeds allowed / the task's", 1, false},
     {"samples", "samples (millions)", 1e-6, false},
     {"seconds", "minutes of training", 1.0 / 60, false},
@@ -125,6 +126,9 @@ std::string TicsScript(const char* axis, double step) {
                   : fmt::format("set {}tics autofreq\n", axis);
 }
 
+// Colours repeat after eight runs; dashes tell the next eight apart.
+const char* DashOf(std::size_t run) { return run < 8 ? "" : " dt 2"; }
+
 std::string PanelScript(const std::vector<Curve>& curves, const std::string& column,
                         std::size_t panel) {
   const Axis axis = AxisOf(column);
@@ -140,23 +144,34 @@ std::string PanelScript(const std::vector<Curve>& curves, const std::string& col
   for (std::size_t r = 0; r < runs; ++r)
     script +=
         fmt::format(", \\\n  data index {} using 1:{} with {} lc rgb \"{}\"", r, 2 * panel + 3,
-                    curves[r].table.num_rows() == 1 ? "points pt 7 ps 0.4" : "lines lw 1.6",
+                    curves[r].table.num_rows() == 1 ? "points pt 7 ps 0.4"
+                                                    : fmt::format("lines lw 1.6{}", DashOf(r)),
                     PaletteColor(static_cast<int>(r)));
   return script + "\n";
 }
 
 // An empty plot over the whole canvas that carries the legend of all panels.
-std::string LegendScript(const std::vector<Curve>& curves) {
+std::string LegendScript(const std::vector<Curve>& curves, std::size_t across) {
   std::string script =
       "unset title\nunset xlabel\nunset border\nunset tics\nunset grid\nunset logscale\n"
       "set margins screen 0,0,0,0\nset lmargin at screen 0\nset rmargin at screen 1\n"
       "set bmargin at screen 0\nset tmargin at screen 1\n"
-      "set key at screen 0.5,screen 0.995 center top horizontal samplen 2 width 1\n"
-      "set xrange [0:1]\nset yrange [0:1]\nplot ";
+      "set key at screen 0.5,screen 0.995 center top horizontal samplen 2 width 1";
+  script += fmt::format(" maxcols {}\n", across);
+  script += "set xrange [0:1]\nset yrange [0:1]\nplot ";
   for (std::size_t r = 0; r < curves.size(); ++r)
-    script += fmt::format("{}NaN with lines lw 2.5 lc rgb \"{}\" title {}", r > 0 ? ", " : "",
-                          PaletteColor(static_cast<int>(r)), GnuplotQuoted(curves[r].label));
+    script +=
+        fmt::format("{}NaN with lines lw 2.5{} lc rgb \"{}\" title {}", r > 0 ? ", " : "",
+                    DashOf(r), PaletteColor(static_cast<int>(r)), GnuplotQuoted(curves[r].label));
   return script + "\n";
+}
+
+// Names that fit side by side into so many cm.
+std::size_t NamesAcross(const std::vector<Curve>& curves, double width) {
+  std::size_t longest = 0;
+  for (const Curve& curve : curves) longest = std::max(longest, curve.label.size());
+  return std::max<std::size_t>(
+      1, static_cast<std::size_t>(width / (1.6 + 0.22 * static_cast<double>(longest))));
 }
 
 }  // namespace
@@ -170,9 +185,11 @@ Figure CurvesFigure(const std::vector<Curve>& curves, const std::string& x,
   const std::size_t down = (columns.size() + across - 1) / across;
   Figure figure;
   figure.width = 6.3 * static_cast<double>(across);
-  figure.height = 4.9 * static_cast<double>(down) + 0.7;
+  const std::size_t names = NamesAcross(curves, figure.width);
+  const double legend = 0.45 * static_cast<double>((curves.size() + names - 1) / names - 1);  // cm
+  figure.height = 4.9 * static_cast<double>(down) + 0.7 + legend;
   figure.data = CurveData(curves, x, columns, smooth);
-  const double top = 1 - 1.35 / figure.height, bottom = 1.0 / figure.height;
+  const double top = 1 - (1.35 + legend) / figure.height, bottom = 1.0 / figure.height;
   figure.script = fmt::format(
       "set multiplot layout {},{} margins {:.4f},{:.4f},{:.4f},{:.4f} spacing "
       "{:.4f},{:.4f}\n"
@@ -184,7 +201,7 @@ Figure CurvesFigure(const std::vector<Curve>& curves, const std::string& x,
   figure.script += TicsScript("x", TicStep(curves, x, 5));
   for (std::size_t p = 0; p < columns.size(); ++p)
     figure.script += PanelScript(curves, columns[p], p);
-  figure.script += LegendScript(curves) + "unset multiplot\nreset\n";
+  figure.script += LegendScript(curves, names) + "unset multiplot\nreset\n";
   return figure;
 }
 
