@@ -77,6 +77,12 @@ struct TaskOptions {
   RandomOptions random;
   void Register(Options& options);  // section "task"
   void Check() const;               // throws UsageError for malformed lists
+
+ private:
+  void RegisterEpisode(Options& options);  // its end, and what a success is
+  void RegisterReward(Options& options);
+  void RegisterPolicySide(Options& options);  // actions and what is shown
+  void RegisterDraws(Options& options);       // goals and physical parameters
 };
 
 // e_phys (paper, section III-B): mass 1 (kg), centre of mass 3 (m, O), friction 1, scale 1,

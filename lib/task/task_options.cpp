@@ -4,6 +4,13 @@
 namespace dexremoe {
 
 void TaskOptions::Register(Options& options) {
+  RegisterEpisode(options);
+  RegisterReward(options);
+  RegisterPolicySide(options);
+  RegisterDraws(options);
+}
+
+void TaskOptions::RegisterEpisode(Options& options) {
   options.Add("task.episode_length", &episode_length, "control steps").Range(1, 1e6);
   options
       .Add("task.goal_timeout", &goal_timeout,
@@ -20,6 +27,9 @@ void TaskOptions::Register(Options& options) {
   options.Add("task.spin_max", &spin_max, "object, at a success, rad/s").Range(1e-6, 1e6);
   options.Add("task.hold_steps", &hold_steps, "control steps that a success must hold")
       .Range(1, 1e6);
+}
+
+void TaskOptions::RegisterReward(Options& options) {
   options.Add("task.c_success", &c_success, "reward of a success");
   options.Add("task.c_dist", &c_dist, "reward per m from grasp_center");
   options.Add("task.c_rot", &c_rot, "reward: c_rot / (angle + epsilon)");
@@ -31,6 +41,9 @@ void TaskOptions::Register(Options& options) {
   options.Add("task.c_progress", &c_progress, "reward per rad of progress");
   options.Add("task.c_fall", &c_fall, "reward of a fall");
   options.Add("task.c_jam", &c_jam, "reward when goal_timeout runs out");
+}
+
+void TaskOptions::RegisterPolicySide(Options& options) {
   options.Add("task.action_scale", &action_scale, "target increment at a = 1, rad per control step")
       .Range(0, 10);
   options.Add("task.ema", &ema, "weight of the new action in the moving average").Range(1e-3, 1);
@@ -44,6 +57,9 @@ void TaskOptions::Register(Options& options) {
       .Choices({"goal_vector", "joint_speed", "tip_position", "tip_contact", "wait_clock"});
   options.Add("task.observe", &observe, "what o_t shows of the past commands")
       .Choices({"action", "target"});
+}
+
+void TaskOptions::RegisterDraws(Options& options) {
   options.Add("task.goal_angle", &goal_angle, "goals within this angle, rad; pi and more: any")
       .Range(1e-3, 10);
   options.Add("task.near_share", &near_share, "share of goals within task.near_angle").Range(0, 1);
