@@ -20,15 +20,26 @@ $(BUILD)/bench/torch_update: $(TORCH_OBJECTS)
 	@echo '  LINK $@'
 	@$(CXX) $(LDFLAGS) $^ -ltorch_cpu -lc10 -ldl -o $@
 
+# Convex parts by libHACD, for comparison, where Debian's libbullet-extras-dev is installed.
+HACD_INCLUDE := /usr/include/bullet
+HACD_PEER = $(if $(wildcard $(HACD_INCLUDE)/HACD/hacdHACD.h),$(BUILD)/bench/bench_hacd)
+HACD_OBJECTS := $(patsubst %.cpp,$(BUILD)/obj/%.o,$(wildcard tests/bench/hacd/*.cpp))
+
+$(HACD_OBJECTS): DEX_CXXFLAGS += -isystem $(HACD_INCLUDE)
+$(BUILD)/bench/bench_hacd: $(HACD_OBJECTS) $(ARCHIVES)
+	@mkdir -p $(@D)
+	@echo '  LINK $@'
+	@$(CXX) $(LDFLAGS) -Wl,--as-needed $(HACD_OBJECTS) $(LINK_ORDER) -lHACD $(LIBS) -o $@
+
 # Meshes whose decomposition is measured: the built-in ones, and OBJECTS where it names a folder.
 BENCH_MESHES := meshes/builtin$(if $(filter-out builtin,$(OBJECTS)),$(comma)$(OBJECTS))
 
 .PHONY: bench
-bench: deps  ## measure decomposition, speed and accuracy of the physics, speed of learning; writes results/bench/ (install libtorch-dev libopenblas0-openmp to compare with libtorch)
-	+@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench/bench $(TORCH_UPDATE) \
+bench: deps  ## measure decomposition, speed and accuracy of the physics, speed of learning; writes results/bench/ (install libtorch-dev libopenblas0-openmp to compare with libtorch, libbullet-extras-dev with libHACD)
+	+@$(MAKE) $(JOBS) --no-print-directory $(BUILD)/bench/bench $(TORCH_UPDATE) $(HACD_PEER) \
 	  $(addprefix $(BUILD)/bin/,bench_decompose bench_sim validate_sim bench_learn make_objects) meshes/builtin/manifest.csv
 	@mkdir -p results/bench
-	$(BUILD)/bin/bench_decompose --meshes=$(BENCH_MESHES) --workers=$(WORKERS) --out=results/bench/decompose.md --csv=results/bench/decompose.csv
+	$(BUILD)/bin/bench_decompose --meshes=$(BENCH_MESHES) --workers=$(WORKERS) $(HACD_PEER:%=--peer=%) --out=results/bench/decompose.md --csv=results/bench/decompose.csv
 	$(BUILD)/bin/bench_sim --workers=$(WORKERS) --out=results/bench/sim.md --csv=results/bench/sim.csv
 	$(BUILD)/bin/validate_sim --workers=$(WORKERS) --out=results/bench/validate_sim.md --csv=results/bench/validate_sim.csv
 	@$(if $(TORCH_UPDATE),,echo 'Learning is not compared with libtorch: no $(TORCH_INCLUDE) (Debian package libtorch-dev).')

@@ -1,6 +1,9 @@
 // Measures convex decomposition over folders of meshes.
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "base/options.h"
 #include "eval/decompose_bench.h"
 #include "io/atomic_file.h"
@@ -26,9 +29,11 @@ struct BenchDecomposeOptions {
 void Run(const BenchDecomposeOptions& o) {
   ThreadPool pool(o.workers);
   std::vector<DecomposedMesh> results;
-  for (const std::string& folder : o.meshes)
-    for (DecomposedMesh& mesh : BenchFolder(folder, o.bench, pool))
-      results.push_back(std::move(mesh));
+  for (const std::string& folder : o.meshes) {
+    std::ranges::move(BenchFolder(folder, o.bench, pool), std::back_inserter(results));
+    if (!o.bench.peer.empty())
+      std::ranges::move(BenchPeerFolder(folder, o.bench, pool), std::back_inserter(results));
+  }
   const std::string text = DecomposeMarkdown(results, o.bench);
   if (!o.out.empty()) WriteFile(o.out, text);
   if (!o.csv.empty()) WriteFile(o.csv, DecomposeCsv(results));

@@ -1,20 +1,27 @@
 #include "eval/decompose_bench.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <functional>
 
 #include "base/error.h"
 #include "eval/metrics.h"
+#include "eval/peer_program.h"
 #include "eval/sim_table.h"
 #include "geometry/mesh_io.h"
+#include "geometry/object_files.h"
 #include "geometry/voxel_solid.h"
 #include "io/csv.h"
 #include "task/object_choice.h"
 
 namespace dexremoe {
 namespace {
+
+constexpr const char* kPeerNote = ", libHACD";
 
 // Processor time of the calling thread, s.
 double ThreadTime() {
@@ -23,17 +30,49 @@ double ThreadTime() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-DecomposedMesh DecomposeFile(const std::string& path, const DecomposeBenchOptions& options) {
+// Parts of a closed object and the processor time that they took, s.
+struct TimedParts {
+  ConvexParts parts;
+  double seconds = 0;
+};
+using PartMaker = std::function<TimedParts(const ObjectMesh& object, const std::string& path)>;
+
+TimedParts OurParts(const ObjectMesh& object, const std::string& path,
+                    const DecomposeOptions& options) {
+  const double start = ThreadTime();
+  ConvexParts parts = DecomposeConvex(object.mesh, options, path);
+  return {std::move(parts), ThreadTime() - start};
+}
+
+// Files go to and fro because the peer may crash: it is a process of its own.
+TimedParts PeerParts(const ObjectMesh& object, const DecomposeBenchOptions& options) {
+  namespace fs = std::filesystem;
+  const std::string stem =
+      fs::temp_directory_path() / fmt::format("dexremoe_peer_{}_{}", getpid(), object.name);
+  const std::string mesh = stem + ".mesh.h5", parts = stem + ".parts.h5";
+  WriteObjectMesh(mesh, object, {});
+  const std::string output = OutputOf(
+      options.peer, fmt::format("{} --mesh={} --out={} --parts={} --hull_vertices={}",
+                                ShellQuoted(options.peer), ShellQuoted(mesh), ShellQuoted(parts),
+                                options.decompose.parts, options.decompose.hull_vertices));
+  TimedParts result = {ReadParts(parts).parts, std::strtod(output.c_str(), nullptr)};
+  fs::remove(mesh);
+  fs::remove(parts);
+  return result;
+}
+
+DecomposedMesh MeasureFile(const std::string& path, const DecomposeBenchOptions& options,
+                           const PartMaker& make) {
   DecomposedMesh result;
   result.name = std::filesystem::path(path).stem().string();
   const TriMesh source = LoadMesh(path);
-  double start = ThreadTime();
-  const ObjectMesh object = MakeObject(source, options.scale, path);
-  const TriMesh& mesh = object.mesh;
+  const double start = ThreadTime();
+  ObjectMesh object = MakeObject(source, options.scale, path);
+  object.name = result.name;
   result.repair_seconds = ThreadTime() - start;
-  start = ThreadTime();
-  const ConvexParts parts = DecomposeConvex(mesh, options.decompose, path);
-  result.seconds = ThreadTime() - start;
+  const auto [parts, seconds] = make(object, path);
+  const TriMesh& mesh = object.mesh;
+  result.seconds = seconds;
   result.source_triangles = static_cast<int>(source.triangles.size());
   result.triangles = static_cast<int>(mesh.triangles.size());
   result.parts = static_cast<int>(parts.size());
@@ -42,6 +81,22 @@ DecomposedMesh DecomposeFile(const std::string& path, const DecomposeBenchOption
   result.voxel = VoxelSize(BoundsOf(mesh), options.decompose.resolution);
   result.quality = QualityOf(mesh, parts);
   return result;
+}
+
+// Every n-th mesh of a folder, one per thread at a time.
+std::vector<DecomposedMesh> MeasureFolder(const std::string& folder, int every,
+                                          const std::string& note,
+                                          const DecomposeBenchOptions& options,
+                                          const PartMaker& make, ThreadPool& pool) {
+  const std::vector<MeshFile> files = ListMeshes(folder);
+  const int count = (static_cast<int>(files.size()) + every - 1) / every;
+  std::vector<DecomposedMesh> meshes(count);
+  const std::string set = std::filesystem::path(folder + "/").parent_path().filename().string();
+  pool.ParallelFor(count, [&](int i, int) {
+    meshes[i] = MeasureFile(files[static_cast<std::size_t>(i) * every].path, options, make);
+    meshes[i].set = set + note;
+  });
+  return meshes;
 }
 
 // The sets in order of appearance, each with its meshes.
@@ -91,7 +146,7 @@ std::vector<Measurement> Summary(const std::vector<DecomposedMesh>& meshes) {
   std::vector<Measurement> summary;
   for (const auto& [set, members] : BySet(meshes)) {
     Summarise("parts", set, members, parts, summary);
-    Summarise("repair", set, members, repair, summary);
+    if (!set.ends_with(kPeerNote)) Summarise("repair", set, members, repair, summary);
   }
   // Quoted: V-HACD 4.1 with 16 hulls, 64 vertices and 100 k voxels on closed versions of 150 real
   // meshes.
@@ -106,6 +161,8 @@ std::vector<Measurement> Summary(const std::vector<DecomposedMesh>& meshes) {
 
 void DecomposeBenchOptions::Register(Options& options) {
   options.Add("every", &every, "takes every n-th mesh of a folder").Range(1, 1e6);
+  options.Add("peer", &peer, "program that decomposes by libHACD; empty: none").NotStored();
+  options.Add("peer_every", &peer_every, "which takes every n-th mesh of a folder").Range(1, 1e6);
   scale.Register(options);
   decompose.Register(options);
 }
@@ -116,15 +173,21 @@ double DecomposedMesh::StickOut() const {
 
 std::vector<DecomposedMesh> BenchFolder(const std::string& folder,
                                         const DecomposeBenchOptions& options, ThreadPool& pool) {
-  const std::vector<MeshFile> files = ListMeshes(folder);
-  const int count = (static_cast<int>(files.size()) + options.every - 1) / options.every;
-  std::vector<DecomposedMesh> meshes(count);
-  const std::string set = std::filesystem::path(folder + "/").parent_path().filename().string();
-  pool.ParallelFor(count, [&](int i, int) {
-    meshes[i] = DecomposeFile(files[static_cast<std::size_t>(i) * options.every].path, options);
-    meshes[i].set = set;
-  });
-  return meshes;
+  return MeasureFolder(
+      folder, options.every, "", options,
+      [&](const ObjectMesh& object, const std::string& path) {
+        return OurParts(object, path, options.decompose);
+      },
+      pool);
+}
+
+std::vector<DecomposedMesh> BenchPeerFolder(const std::string& folder,
+                                            const DecomposeBenchOptions& options,
+                                            ThreadPool& pool) {
+  return MeasureFolder(
+      folder, options.peer_every, kPeerNote, options,
+      [&](const ObjectMesh& object, const std::string&) { return PeerParts(object, options); },
+      pool);
 }
 
 std::string DecomposeMarkdown(const std::vector<DecomposedMesh>& meshes,
@@ -138,11 +201,12 @@ std::string DecomposeMarkdown(const std::vector<DecomposedMesh>& meshes,
       "the bounding box. Stick-out: how far the worst part gets outside the mesh. Time: from "
       "closed mesh to parts. V-HACD's figures (16 hulls, 64 vertices, 100 k voxels, closed "
       "versions of 150 real meshes) are quoted, not "
-      "measured in this run.\n\n## Repair before it\n\n{}\n"
+      "measured in this run; libHACD's, where it is installed, are measured on every {}th "
+      "mesh.\n\n## Repair before it\n\n{}\n"
       "Distance: symmetric Hausdorff distance between the closed mesh and its source, over the "
       "diagonal. Time: scaling and mass properties included.\n",
       MachineText(), options.decompose.parts, options.decompose.hull_vertices,
-      options.decompose.resolution, MarkdownOf(summary, "parts", "set"),
+      options.decompose.resolution, MarkdownOf(summary, "parts", "set"), options.peer_every,
       MarkdownOf(summary, "repair", "set"));
 }
 

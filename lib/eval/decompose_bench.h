@@ -12,7 +12,9 @@
 namespace dexremoe {
 
 struct DecomposeBenchOptions {
-  int every = 1;  // takes every n-th mesh of a folder
+  int every = 1;        // takes every n-th mesh of a folder
+  std::string peer;     // program of tests/bench/hacd; empty: none
+  int peer_every = 30;  // it takes every n-th mesh
   ScaleOptions scale;
   DecomposeOptions decompose;
   void Register(Options& options);
@@ -37,6 +39,11 @@ struct DecomposedMesh {
 // at a time. The set is named after the folder.
 std::vector<DecomposedMesh> BenchFolder(const std::string& folder,
                                         const DecomposeBenchOptions& options, ThreadPool& pool);
+
+// The same meshes by options.peer, in a set of its own that is named after it: `SET, libHACD`.
+// Throws Error naming the program when it fails.
+std::vector<DecomposedMesh> BenchPeerFolder(const std::string& folder,
+                                            const DecomposeBenchOptions& options, ThreadPool& pool);
 
 // Medians and spreads of every set beside V-HACD's figures, with how to read them.
 std::string DecomposeMarkdown(const std::vector<DecomposedMesh>& meshes,

@@ -1,41 +1,17 @@
 #include "eval/learn_bench_peer.h"
 
-#include <sys/wait.h>
-
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <sstream>
 #include <vector>
 
 #include "base/error.h"
+#include "eval/peer_program.h"
 
 namespace dexremoe {
 namespace {
 
 constexpr std::size_t kFields = 7;
-
-// For the shell.
-std::string Quoted(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
-// The standard output of a shell command.
-std::string OutputOf(const std::string& program, const std::string& command) {
-  std::FILE* pipe = popen(command.c_str(), "re");
-  if (pipe == nullptr) Fail("{}: cannot be started: {}", program, std::strerror(errno));
-  std::string text;
-  char chunk[256];
-  while (const std::size_t got = std::fread(chunk, 1, sizeof chunk, pipe)) text.append(chunk, got);
-  const int status = pclose(pipe);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    Fail("{}: expected success, found wait status {}", program, status);
-  return text;
-}
 
 }  // namespace
 
@@ -68,7 +44,7 @@ PeerUpdate RunPeer(const std::string& program, const PpoOptions& ppo, const Poli
                fmt::format("OMP_NUM_THREADS={0} OPENBLAS_NUM_THREADS={0} {1} --workers={0} "
                            "--envs={2} --horizon={3} --minibatch={4} --mini_epochs={5} "
                            "--hidden={6} --precision={7} --seconds={8}",
-                           workers, Quoted(program), ppo.envs, ppo.horizon, ppo.minibatch,
+                           workers, ShellQuoted(program), ppo.envs, ppo.horizon, ppo.minibatch,
                            ppo.mini_epochs, hidden, ppo.precision, seconds)));
 }
 

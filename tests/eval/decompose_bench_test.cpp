@@ -3,13 +3,22 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "base/error.h"
+#include "geometry/mesh_io.h"
+#include "geometry/object_files.h"
+#include "hand/primitive_mesh.h"
 
 namespace dexremoe {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::ThrowsMessage;
 
 DecomposedMesh Measured(const std::string& set, double ratio) {
   DecomposedMesh mesh;
@@ -40,6 +49,48 @@ TEST(DecomposeBench, ListsEveryMeshAsCsv) {
 TEST(DecomposeBench, RefusesAFolderWithoutMeshes) {
   ThreadPool pool(1);
   EXPECT_THROW(BenchFolder("tests/eval", {}, pool), Error);
+}
+
+// A folder with one ball, and a shell script in place of the program that decomposes by libHACD.
+class Peer : public testing::Test {
+ protected:
+  Peer() : folder_(fs::temp_directory_path() / fmt::format("dexremoe it's a peer {}", getpid())) {
+    fs::create_directories(folder_ / "balls" / "shoe");
+    SaveMesh(Meshes() + "/shoe/ball.ply", SphereMesh(0.05));
+    options_.peer = folder_ / "peer.sh";
+  }
+  ~Peer() override { fs::remove_all(folder_); }
+
+  std::string Meshes() const { return folder_ / "balls"; }
+  void Script(const std::string& text) {
+    std::ofstream(options_.peer) << "#!/bin/sh\n" << text << "\n";
+    fs::permissions(options_.peer, fs::perms::owner_all);
+  }
+  std::vector<DecomposedMesh> Run() {
+    ThreadPool pool(1);
+    return BenchPeerFolder(Meshes(), options_, pool);
+  }
+
+  fs::path folder_;
+  DecomposeBenchOptions options_;
+};
+
+TEST_F(Peer, IsAskedForPartsOfTheSameMeshAndTellsItsOwnTime) {
+  ObjectParts parts;
+  parts.parts = {SphereMesh(0.05)};
+  WriteParts(folder_ / "parts.h5", parts, {});
+  Script(
+      "[ -f \"${1#--mesh=}\" ] && cp \"$(dirname \"$0\")/parts.h5\" \"${2#--out=}\" && echo 1.5");
+  const auto meshes = Run();
+  ASSERT_EQ(meshes.size(), 1u);
+  EXPECT_EQ(meshes[0].set, "balls, libHACD");
+  EXPECT_EQ(meshes[0].seconds, 1.5);
+  EXPECT_EQ(meshes[0].parts, 1);
+}
+
+TEST_F(Peer, ThatFailsIsNamed) {
+  Script("exit 7");
+  EXPECT_THAT([&] { Run(); }, ThrowsMessage<Error>(HasSubstr("peer.sh: expected success")));
 }
 
 }  // namespace
