@@ -129,6 +129,21 @@ Shell ExtractShell(const TriMesh& source, int resolution, double lost_surface) {
   return shell;
 }
 
+// The number of triangles goes with the square of the resolution, or a little faster.
+int Coarser(int resolution, double too_many) {
+  return std::max(16, static_cast<int>(0.97 * resolution / std::sqrt(too_many)));
+}
+
+// What keeps to max_triangles, judged by a shell of half the resolution: an eighth of the work.
+int FittingResolution(const TriMesh& source, const RepairOptions& options) {
+  constexpr double kGrowth = 4.2;  // of the number of triangles
+  const Shell coarse =
+      ExtractShell(source, std::max(options.resolution / 2, 8), options.lost_surface);
+  const double expected = kGrowth * static_cast<double>(coarse.mesh.triangles.size());
+  if (expected <= options.max_triangles) return options.resolution;
+  return Coarser(options.resolution, expected / options.max_triangles);
+}
+
 std::string Describe(const Topology& was, const std::string& fault, const Shell& shell) {
   std::string text = fmt::format("remeshed: {} shells, {} open edges, {} crowded edges{}",
                                  was.shells, was.open_edges, was.crowded_edges, fault);
@@ -147,12 +162,11 @@ std::string Describe(const Topology& was, const std::string& fault, const Shell&
 RepairResult Remesh(const TriMesh& mesh, const Topology& was, const std::string& fault,
                     const RepairOptions& options, const std::string& label) {
   const TriMesh source = WithConsistentWinding(WithoutDoubleSides(mesh));
-  Shell shell = ExtractShell(source, options.resolution, options.lost_surface);
+  int resolution = FittingResolution(source, options);
+  Shell shell = ExtractShell(source, resolution, options.lost_surface);
   const auto count = static_cast<double>(shell.mesh.triangles.size());
   if (count > options.max_triangles) {
-    // The number of triangles goes with the square of the resolution, or a little faster.
-    const double finer = std::sqrt(count / options.max_triangles);
-    const int resolution = std::max(16, static_cast<int>(0.97 * options.resolution / finer));
+    resolution = Coarser(resolution, count / options.max_triangles);
     shell = ExtractShell(source, resolution, options.lost_surface);
   }
   SmoothTangentially(2, shell.mesh);

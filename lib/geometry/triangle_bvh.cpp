@@ -17,11 +17,32 @@ double SquaredDistance(const Box3& box, const Eigen::Vector3d& p) {
   return (box.min - p).cwiseMax(p - box.max).cwiseMax(0.0).squaredNorm();
 }
 
-// Solid angle of a triangle seen from the origin (Van Oosterom and Strackee 1983).
-double SolidAngle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+// Sum of the angles of complex numbers: the angle of their product and how often that went round.
+// One arctangent in all in place of one each, which was half of the time of a winding number.
+class AngleSum {
+ public:
+  void Add(double x, double y) {
+    const double size = std::abs(x) + std::abs(y);
+    if (size == 0) return;
+    const double re = x_ * x - y_ * y, im = x_ * y + y_ * x;
+    // Both angles have one sign and their sum leaves (-pi, pi].
+    if (y_ >= 0 && y >= 0 && im < 0) ++turns_;
+    if (y_ < 0 && y < 0 && im >= 0) --turns_;
+    const double scale = 1 / (std::abs(re) + std::abs(im));
+    x_ = scale * re, y_ = scale * im;
+  }
+  double Radians() const { return std::atan2(y_, x_) + 2 * std::numbers::pi * turns_; }
+
+ private:
+  double x_ = 1, y_ = 0;
+  int turns_ = 0;
+};
+
+// Adds half of the solid angle of a triangle seen from the origin (Van Oosterom and Strackee 1983).
+void AddHalfSolidAngle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                       AngleSum& sum) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  return 2 * std::atan2(a.dot(b.cross(c)),
-                        la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  sum.Add(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb, a.dot(b.cross(c)));
 }
 
 }  // namespace
@@ -139,7 +160,8 @@ SurfacePoint TriangleBvh::Closest(const Eigen::Vector3d& p, int hint) const {
 }
 
 double TriangleBvh::WindingNumber(const Eigen::Vector3d& p) const {
-  double angle = 0;
+  double far = 0;
+  AngleSum near;  // half of it
   int stack[64];
   int depth = 0;
   stack[depth++] = 0;
@@ -148,16 +170,16 @@ double TriangleBvh::WindingNumber(const Eigen::Vector3d& p) const {
     const Eigen::Vector3d to_center = node.center - p;
     const double squared = to_center.squaredNorm();
     if (squared > kFar * kFar * node.radius * node.radius) {
-      angle += node.area.dot(to_center) / (squared * std::sqrt(squared));
+      far += node.area.dot(to_center) / (squared * std::sqrt(squared));
       continue;
     }
     for (int i = node.first; i < node.first + node.count; ++i)
-      angle += SolidAngle(corners_[i].a - p, corners_[i].b - p, corners_[i].c - p);
+      AddHalfSolidAngle(corners_[i].a - p, corners_[i].b - p, corners_[i].c - p, near);
     if (node.count > 0) continue;
     stack[depth++] = node.right;
     stack[depth++] = static_cast<int>(&node - nodes_.data()) + 1;
   }
-  return angle / (4 * std::numbers::pi);
+  return (far + 2 * near.Radians()) / (4 * std::numbers::pi);
 }
 
 std::vector<Eigen::Vector3d> SpreadOverSurface(const TriMesh& mesh, int count) {

@@ -38,6 +38,25 @@ TEST(WindingNumber, IsOneInsideZeroOutside) {
   }
 }
 
+// Near the surface nothing is far: the number is that of all triangles, each by its arctangent.
+TEST(WindingNumber, CountsEverySheetOfShellsInShells) {
+  TriMesh shells;
+  for (int i = 1; i <= 5; ++i) {
+    const Eigen::Vector3d size = Eigen::Vector3d::Constant(0.2 * i);
+    const int first = static_cast<int>(shells.vertices.size());
+    const TriMesh box = BoxMesh(-size, size);
+    for (const Eigen::Vector3d& v : box.vertices) shells.vertices.push_back(v);
+    for (const auto& [a, b, c] : box.triangles)
+      shells.triangles.push_back({first + a, first + b, first + c});
+  }
+  const TriangleBvh bvh(shells);
+  for (int i = 0; i <= 5; ++i) {
+    const double x = 0.2 * i + 0.1;
+    EXPECT_NEAR(bvh.WindingNumber({x, 0.01, 0.02}), 5 - i, 0.03);
+    EXPECT_NEAR(bvh.WindingNumber({-0.01, -x, 0.03}), 5 - i, 0.03);
+  }
+}
+
 TEST(WindingNumber, SeesThroughTheHoleOfAnOpenSphere) {
   TriMesh open = SphereMesh(1, 24);
   std::erase_if(open.triangles, [&](const auto& t) { return open.vertices[t[0]].z() > 0.93; });
