@@ -40,7 +40,7 @@ include mk/debian.mk
 include mk/bench.mk
 include mk/experiment.mk
 include mk/baselines.mk
-include mk/ablate.mk
+include mk/ablate_recipe.mk
 
 .PHONY: help
 help:  ## this list
