@@ -14,7 +14,7 @@ struct Figure {
   std::string script;              // gnuplot commands; the file is called data
 };
 
-// Adds a line at the foot that names what could not be drawn; nothing for no names.
+// Adds a line down the right edge that names what could not be drawn; nothing for no names.
 void NoteMissing(const std::vector<std::string>& names, Figure& figure);
 
 // Writes STEM.dat, STEM.gp, STEM.png and STEM.pdf; equal figures give equal bytes. Throws Error
