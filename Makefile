@@ -40,7 +40,10 @@ include mk/debian.mk
 include mk/bench.mk
 include mk/experiment.mk
 include mk/baselines.mk
-include mk/ablate.mk
+include mk/ablations.mk
+include mk/products.mk
+include mk/reproduce.mk
+include mk/ablate_recipe.mk
 
 .PHONY: help
 help:  ## this list

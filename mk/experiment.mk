@@ -56,13 +56,14 @@ dataset: deps  ## draw all objects: training left of a line, out of distribution
 	@mkdir -p paper_figs
 	cp $(OUT)/figures/dataset.png paper_figs/
 
-TABLES  := $(OUT)/tables/table1.md $(OUT)/tables/categories.md $(OUT)/tables/methods.md
-FIGURES := $(addprefix $(OUT)/figures/,curves.png objects.png parts.png per_object.png tsne.png \
-  baselines.png adr.png hand.png hand_parts.png strip.png episode.mp4)
-PRODUCTS := $(TABLES) $(FIGURES)
-
-.PHONY: experiment
-experiment: $(PRODUCTS)
+# With EXISTING=1 (make tables, figures, reproduce) nothing is trained: the rules that train are not
+# there, and tables and figures are made of what is. Without it these lists stay whole.
+# $(1): evaluations eval/NAME.h5, of policies NAME.h5
+policy_of  = $(OUT)/$(patsubst gate_%,gate,$(basename $(notdir $(1)))).h5
+evaluable  = $(if $(EXISTING),$(foreach f,$(1),$(if $(wildcard $(call policy_of,$(f))),$(f))),$(1))
+evaluated  = $(if $(EXISTING),$(foreach f,$(1),$(if $(wildcard $(f) $(call policy_of,$(f))),$(f))),$(1))
+# $(1): checkpoints; $(2): other files of their trainings, where they are what is used
+trained_in = $(if $(EXISTING),$(wildcard $(or $(2),$(1))),$(1))
 
 # Rewritten only when a variable changed, so that what depends on it is remade exactly then.
 $(OUT)/settings.txt: FORCE
@@ -103,8 +104,10 @@ $(OBJDIR)/%/shape.h5: $(OBJDIR)/%/cloud.h5 $(OUT)/shape_net.h5 | $(BIN)/describe
 $(OBJDIR)/%/grasps.h5: $(OBJDIR)/%/parts.h5 $(OUT)/settings.txt | $(BIN)/find_grasps
 	$(BIN)/find_grasps $(COMMON) $(SIM) --mesh=$(@D)/mesh.h5 --parts=$< --out=$@ | tee $(@D)/grasps.log
 
+ifndef EXISTING
 $(OUT)/shape_net.h5: $(OUT)/objects.mk $(call OBJECT_FILES,cloud) | $(BIN)/train_shape
 	$(BIN)/train_shape $(COMMON) --workers=$(WORKERS) --objects=$(OUT)/objects.csv --out=$@
+endif
 
 READY := $(OUT)/objects.mk $(call OBJECT_FILES,parts) $(call OBJECT_FILES,shape) $(call OBJECT_FILES,grasps)
 
@@ -118,9 +121,9 @@ clouds: $(OUT)/objects.mk $(call OBJECT_FILES,cloud)
 # is the last state; NAME.best.h5 the best one: highest successes per episode at the hardest task
 # that the curriculum reached; snapshots/NAME/SAMPLES.h5 are states on the way.
 
-# $(1): tool and its inputs
+# $(1): tool and its inputs; $(2): list of objects, where it is not that of the run
 train = mkdir -p $(OUT)/curves && \
-  $(LAUNCH) $(BIN)/$(1) $(COMMON) $(SIM) --objects=$(OUT)/objects.csv --out=$(@:.h5=.running.h5) --resume \
+  $(LAUNCH) $(BIN)/$(1) $(COMMON) $(SIM) --objects=$(or $(2),$(OUT)/objects.csv) --out=$(@:.h5=.running.h5) --resume \
     --best=$(@:.h5=.best.h5) --snapshots=$(OUT)/snapshots/$(basename $(notdir $@)) --curve=$(OUT)/curves/$(notdir $(@:.h5=.csv)) \
     --tensorboard=$(OUT)/tensorboard/$(basename $(notdir $@)) && mv $(@:.h5=.running.h5) $@
 
@@ -131,6 +134,7 @@ expert_categories_train := train
 expert_categories_animal := animal
 EXPERT_FILES := $(EXPERTS:%=$(OUT)/expert_%.h5)
 
+ifndef EXISTING
 $(OUT)/base.h5: $(READY) | $(BIN)/train_base
 	$(call train,train_base)
 $(EXPERT_FILES): $(OUT)/expert_%.h5: $(OUT)/base.h5 | $(BIN)/train_expert
@@ -145,6 +149,7 @@ $(OUT)/untrained.h5: $(READY) | $(BIN)/train_base
 	$(call train,train_base --samples=0)
 $(OUT)/uniform.h5: $(EXPERT_FILES) | $(BIN)/train_gate
 	$(call train,train_gate --experts=$(call commas,$(EXPERT_FILES)) --policy.gate_uniform --samples=0)
+endif
 
 # --- Evaluation ---------------------------------------------------------------------------------
 
@@ -166,25 +171,30 @@ LABELS  := Untrained,Base policy,$(BASELINE_LABELS),Uniform average,DexReMoE
 OURS    := untrained base uniform gate
 EVAL_FILES := $(METHODS:%=$(OUT)/eval/%.h5)
 
-$(EVAL_FILES): $(OUT)/eval/%.h5: $(OUT)/%.h5 | $(BIN)/evaluate
+# The objects come with the trainings; where there are none they are asked for.
+OBJECTS_READY := $(if $(EXISTING),$(READY))
+EVALUATE := $(BIN)/evaluate $(OBJECTS_READY)
+
+$(call evaluable,$(EVAL_FILES)): $(OUT)/eval/%.h5: $(OUT)/%.h5 | $(EVALUATE)
 	@mkdir -p $(@D)
 	$(BIN)/evaluate $(COMMON) --sim.engine=$(CHECK) $(RUNS) --policy=$< --objects=$(OUT)/objects.csv --split=all --out=$@ \
 	  --trace=$(OUT)/trace/$*.h5 >$(OUT)/eval/$*.txt
 
-$(OUT)/tables/table1.md: $(EVAL_FILES) data/paper_tables.csv | $(BIN)/tabulate
-	$(BIN)/tabulate --eval=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" \
+$(OUT)/tables/table1.md: $(call evaluated,$(EVAL_FILES)) data/paper_tables.csv | $(BIN)/tabulate
+	$(BIN)/tabulate --missing --eval=$(call commas,$(EVAL_FILES)) --labels="$(LABELS)" \
 	  --paper=data/paper_tables.csv --out=$(basename $@)
 
 # Without a label: the gate's policy told what PointNet++ takes each object for, or how likely it
 # finds every category.
 UNLABELLED := predicted soft
 UNLABELLED_FILES := $(UNLABELLED:%=$(OUT)/eval/gate_%.h5)
-$(UNLABELLED_FILES): $(OUT)/eval/gate_%.h5: $(OUT)/gate.h5 | $(BIN)/evaluate
+$(call evaluable,$(UNLABELLED_FILES)): $(OUT)/eval/gate_%.h5: $(OUT)/gate.h5 | $(EVALUATE)
 	@mkdir -p $(@D)
 	$(BIN)/evaluate $(COMMON) --sim.engine=$(CHECK) $(RUNS) --eval.category=$* --policy=$< \
 	  --objects=$(OUT)/objects.csv --split=all --out=$@ >$(@:.h5=.txt)
-$(OUT)/tables/categories.md: $(OUT)/eval/gate.h5 $(UNLABELLED_FILES) | $(BIN)/tabulate
-	$(BIN)/tabulate --eval=$(call commas,$^) --labels="Category by label,Predicted category,Probabilities" \
+CATEGORY_FILES := $(OUT)/eval/gate.h5 $(UNLABELLED_FILES)
+$(OUT)/tables/categories.md: $(call evaluated,$(CATEGORY_FILES)) | $(BIN)/tabulate
+	$(BIN)/tabulate --missing --eval=$(call commas,$(CATEGORY_FILES)) --labels="Category by label,Predicted category,Probabilities" \
 	  --out=$(basename $@)
 
 # A base policy on every engine. MuJoCo at about 1 ms is the referee, where it is installed.
@@ -210,15 +220,15 @@ $(OUT)/tables/learned.md: $(CONTROLS) $(CHECK_FILES) | $(BIN)/tabulate
 	$(BIN)/tabulate --engines --eval=$(call commas,$^) --out=$(basename $@) \
 	  --labels="Open-loop hold,Untrained,$(call commas,$(CHECKED:%=Base:%))"
 
-$(OUT)/tsne.h5: $(OUT)/gate.h5 $(OUT)/shape_net.h5 | $(BIN)/embed_gate
+$(OUT)/tsne.h5: $(OUT)/gate.h5 $(OUT)/shape_net.h5 | $(BIN)/embed_gate $(OBJECTS_READY)
 	$(BIN)/embed_gate $(COMMON) --workers=$(WORKERS) --gate=$< --net=$(OUT)/shape_net.h5 \
 	  --objects=$(OUT)/objects.csv --out=$@
 
 # --- Figures ------------------------------------------------------------------------------------
 
 CURVES := $(patsubst %,$(OUT)/curves/%.csv,base $(EXPERTS:%=expert_%) gate)
-$(OUT)/figures/curves.png: $(OUT)/gate.h5 | $(BIN)/plot
-	$(BIN)/plot --kind=curves --in=$(call commas,$(CURVES)) --labels="Base,Generalist,Airplane,Train,Animal,Gate" \
+$(OUT)/figures/curves.png: $(call trained_in,$(OUT)/gate.h5,$(CURVES)) | $(BIN)/plot
+	$(BIN)/plot --kind=curves --missing --in=$(call commas,$(CURVES)) --labels="Base,Generalist,Airplane,Train,Animal,Gate" \
 	  --out=$(basename $@)
 $(OUT)/figures/base.png: $(OUT)/base.h5 | $(BIN)/plot
 	$(BIN)/plot --kind=curves --in=$(OUT)/curves/base.csv --labels="Base" --out=$(basename $@)
@@ -235,8 +245,9 @@ $(OUT)/eval/growth/done: $(OUT)/base.h5 | $(BIN)/evaluate
 $(OUT)/figures/growth.png: $(OUT)/eval/growth/done | $(BIN)/plot
 	$(BIN)/plot --kind=growth --in=$(call commas,$(call grown,$(RUN))) \
 	  --labels=$(call commas,$(call grown_labels,$(RUN))) --out=$(basename $@)
-$(OUT)/figures/per_object.png: $(OURS:%=$(OUT)/eval/%.h5) | $(BIN)/plot
-	$(BIN)/plot --kind=bars --in=$(call commas,$^) --labels="Untrained,Base policy,Uniform average,DexReMoE" \
+OURS_FILES := $(OURS:%=$(OUT)/eval/%.h5)
+$(OUT)/figures/per_object.png: $(call evaluated,$(OURS_FILES)) | $(BIN)/plot
+	$(BIN)/plot --kind=bars --missing --in=$(call commas,$(OURS_FILES)) --labels="Untrained,Base policy,Uniform average,DexReMoE" \
 	  --out=$(basename $@)
 $(OUT)/figures/tsne.png: $(OUT)/tsne.h5 | $(BIN)/plot
 	$(BIN)/plot --kind=tsne --in=$< --out=$(basename $@)

@@ -8,7 +8,7 @@
 #include "base/options.h"
 #include "base/random.h"
 #include "eval/embedding.h"
-#include "rl/checkpoint.h"
+#include "rl/policy_file.h"
 #include "rl/policy_runner.h"
 #include "shape/cloud.h"
 #include "shape/shape_files.h"

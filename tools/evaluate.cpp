@@ -10,7 +10,7 @@
 #include "eval/evaluation.h"
 #include "eval/report.h"
 #include "eval/trace.h"
-#include "rl/checkpoint.h"
+#include "rl/policy_file.h"
 #include "rl/policy_runner.h"
 
 namespace {
@@ -31,7 +31,7 @@ struct EvaluateOptions {
   HandOptions hand;
 
   void Register(Options& options) {
-    options.Add("policy", &policy, "checkpoint of a base, expert or gate; hold: no actions")
+    options.Add("policy", &policy, "checkpoint or weights of any stage or method; hold: no actions")
         .Required();
     options.Add("objects", &objects, "objects.csv").Required();
     options.Add("split", &split, "which objects").Choices({"train", "ood", "all"});

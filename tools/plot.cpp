@@ -17,22 +17,27 @@ struct PlotOptions {
   std::string kind, out, x = "samples", color = "cluster";
   std::vector<std::string> in, labels, columns;
   double smooth = 0.05, tolerance = 0.4;
+  bool missing = false;
 
   void Register(Options& options) {
     options.Add("kind", &kind, "what to draw")
         .Required()
-        .Choices({"curves", "bars", "growth", "tsne"});
+        .Choices({"curves", "bars", "growth", "ablation", "tsne"});
     options
-        .Add("in", &in, "curves: CSV files; bars, growth: dexremoe.eval; tsne: dexremoe.embedding")
+        .Add("in", &in,
+             "curves: CSV files; bars, growth, ablation: dexremoe.eval; tsne: dexremoe.embedding")
         .Required();
     options.Add("labels", &labels, "names of the files in the legend; the file names when absent");
+    options.Add("missing", &missing,
+                "files that are not there are named in the figure, instead of an error");
     options.Add("out", &out, "figure without ending: OUT.png, .pdf, .dat and .gp are written")
         .Required()
         .NotStored();
     options.Add("x", &x, "curves: column on the abscissa");
     options.Add("columns", &columns, "curves: one panel each; the usual ones when absent");
     options.Add("smooth", &smooth, "curves: smooth over this part of the rows").Range(0, 1);
-    options.Add("tolerance", &tolerance, "bars, growth: which tolerance, rad").Range(0, 3.15);
+    options.Add("tolerance", &tolerance, "bars, growth, ablation: which tolerance, rad")
+        .Range(0, 3.15);
     options.Add("color", &color, "tsne: colour by").Choices({"cluster", "category", "expert"});
   }
 };
@@ -50,8 +55,22 @@ std::vector<std::string> Labels(const PlotOptions& o) {
   return o.labels;
 }
 
+// Takes files that are not there out of --in and --labels; returns their labels.
+std::vector<std::string> TakeMissing(PlotOptions& o) {
+  std::vector<std::string> in, labels, gone;
+  for (std::size_t i = 0; i < o.in.size(); ++i) {
+    const bool there = !o.missing || std::filesystem::exists(o.in[i]);
+    (there ? labels : gone).push_back(o.labels[i]);
+    if (there) in.push_back(o.in[i]);
+  }
+  if (in.empty()) Fail("expected at least one of {} files in --in, found none", o.in.size());
+  o.in = in;
+  o.labels = labels;
+  return gone;
+}
+
 Figure Draw(const PlotOptions& o) {
-  const std::vector<std::string> labels = Labels(o);
+  const std::vector<std::string>& labels = o.labels;
   if (o.kind == "tsne") {
     if (o.in.size() != 1)
       throw UsageError(fmt::format("--in: expected one file for tsne, found {}", o.in.size()));
@@ -66,6 +85,7 @@ Figure Draw(const PlotOptions& o) {
       methods.push_back({labels[i], ReadEval(o.in[i])});
   }
   if (o.kind == "curves") return CurvesFigure(curves, o.x, o.columns, o.smooth);
+  if (o.kind == "ablation") return AblationFigure(methods, o.tolerance);
   return o.kind == "growth" ? GrowthFigure(methods, o.tolerance) : BarsFigure(methods, o.tolerance);
 }
 
@@ -79,7 +99,11 @@ int main(int argc, char** argv) {
                   "--out=figures/curves");
   plot.Register(options);
   return RunTool(options, argc, argv, [&] {
-    WriteFigure(plot.out, Draw(plot));
+    plot.labels = Labels(plot);
+    const std::vector<std::string> gone = TakeMissing(plot);
+    Figure figure = Draw(plot);
+    NoteMissing(gone, figure);
+    WriteFigure(plot.out, figure);
     std::printf("%s.png\n%s.pdf\n", plot.out.c_str(), plot.out.c_str());
   });
 }

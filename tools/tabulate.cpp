@@ -1,18 +1,22 @@
 // Tables of evaluation results beside the paper's: Markdown, CSV and LaTeX.
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/options.h"
 #include "eval/tables.h"
 #include "io/atomic_file.h"
 
 namespace {
 
-// Files with the same label are seeds of one method.
+// Files with the same label are seeds of one method. With `missing`, those that are not there are
+// left out.
 std::vector<dexremoe::MethodResults> Group(const std::vector<std::string>& files,
-                                           const std::vector<std::string>& labels) {
+                                           const std::vector<std::string>& labels, bool missing) {
   if (files.size() != labels.size())
     throw dexremoe::UsageError(
         fmt::format("--labels: expected as many as files in --eval ({}), found {}", files.size(),
@@ -22,17 +26,32 @@ std::vector<dexremoe::MethodResults> Group(const std::vector<std::string>& files
     std::size_t m = 0;
     while (m < methods.size() && methods[m].label != labels[i]) ++m;
     if (m == methods.size()) methods.push_back({labels[i], {}});
-    methods[m].evals.push_back(dexremoe::ReadEval(files[i]));
+    if (missing && !std::filesystem::exists(files[i]))
+      dexremoe::LogWarning("missing: {}", files[i]);
+    else
+      methods[m].evals.push_back(dexremoe::ReadEval(files[i]));
   }
   return methods;
+}
+
+// The paper's numbers; of these methods alone unless there are none.
+std::vector<dexremoe::PaperNumber> PaperNumbers(const std::string& path,
+                                                const std::vector<std::string>& methods) {
+  if (path.empty()) return {};
+  std::vector<dexremoe::PaperNumber> numbers = dexremoe::ReadPaperNumbers(path);
+  if (!methods.empty())
+    std::erase_if(numbers, [&](const dexremoe::PaperNumber& number) {
+      return std::find(methods.begin(), methods.end(), number.method) == methods.end();
+    });
+  return numbers;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<std::string> files, labels;
+  std::vector<std::string> files, labels, paper_methods;
   std::string paper, paper_table = "1", out;
-  bool engines = false;
+  bool engines = false, missing = false;
   dexremoe::BootstrapOptions bootstrap;
   dexremoe::Options options(
       "tabulate",
@@ -44,14 +63,15 @@ int main(int argc, char** argv) {
   options.Add("labels", &labels, "row labels; equal labels are seeds of one method").Required();
   options.Add("paper", &paper, "CSV with the paper's numbers; empty leaves them out");
   options.Add("paper_table", &paper_table, "which of the paper's tables");
+  options.Add("paper_methods", &paper_methods, "which rows of it; none: all");
+  options.Add("missing", &missing, "rows whose files are not there say so, instead of an error");
   options.Add("engines", &engines, "rows are physics engines, not methods");
   options.Add("resamples", &bootstrap.resamples, "bootstrap resamples").Range(0, 1e6);
   options.Add("seed", &bootstrap.seed, "seed of the bootstrap");
   options.Add("out", &out, "path without ending").Required().NotStored();
   return dexremoe::RunTool(options, argc, argv, [&] {
-    const auto methods = Group(files, labels);
-    std::vector<dexremoe::PaperNumber> numbers;
-    if (!paper.empty()) numbers = dexremoe::ReadPaperNumbers(paper);
+    const auto methods = Group(files, labels, missing);
+    const auto numbers = PaperNumbers(paper, paper_methods);
     const auto tables = dexremoe::MakeTables(methods, numbers, paper_table, bootstrap, engines);
     const std::string markdown = dexremoe::MarkdownOf(tables);
     dexremoe::WriteFile(out + ".csv", dexremoe::CsvOf(tables));

@@ -15,10 +15,14 @@ int main(int argc, char** argv) {
   StageOptions stage;
   StageKind kind;
   std::string base;
+  double share = 1;
   options.Add("base", &base, "checkpoint of train_base").Required();
   options.Add("categories", &kind.categories, "categories to train on; none: all (generalist)");
+  options.Add("share", &share, "factor on `samples`, where other numbers of experts share a total")
+      .Range(0, 64);
   stage.Register(options);
   return RunTool(options, argc, argv, [&] {
+    stage.samples *= share;
     const TrainState parent = ReadCheckpoint(base);
     kind.inputs = {base};
     kind.cloud_points = parent.structure.cloud_points;

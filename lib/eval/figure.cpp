@@ -105,6 +105,18 @@ void FixPdfDate(const std::string& path) {
 
 }  // namespace
 
+void NoteMissing(const std::vector<std::string>& names, Figure& figure) {
+  if (names.empty()) return;
+  const std::string text = fmt::format("missing: {}", fmt::join(names, ", "));
+  figure.data = fmt::format("# {}\n", text) + figure.data;
+  figure.script =
+      fmt::format(
+          "set label {} at screen 0.985,0.99 right rotate by 90 front font \",7\" textcolor rgb "
+          "\"#707070\"\n",
+          GnuplotQuoted(text)) +
+      figure.script;
+}
+
 void WriteFigure(const std::string& stem, const Figure& figure) {
   const fs::path path(stem);
   const std::string name = path.filename().string();

@@ -14,6 +14,9 @@ struct Figure {
   std::string script;              // gnuplot commands; the file is called data
 };
 
+// Adds a line down the right edge that names what could not be drawn; nothing for no names.
+void NoteMissing(const std::vector<std::string>& names, Figure& figure);
+
 // Writes STEM.dat, STEM.gp, STEM.png and STEM.pdf; equal figures give equal bytes. Throws Error
 // with gnuplot's first complaint when it fails or is not installed; figures that stood there stay.
 void WriteFigure(const std::string& stem, const Figure& figure);

@@ -36,6 +36,10 @@ Figure GrowthFigure(const std::vector<EvaluatedMethod>& methods, double toleranc
 // tolerance or the objects differ.
 Figure BarsFigure(const std::vector<EvaluatedMethod>& methods, double tolerance);
 
+// The paper's five metrics over the training objects with 95 % intervals, grouped by metric, a bar
+// for each method (paper, figure 7). Throws Error when a method lacks the tolerance or objects.
+Figure AblationFigure(const std::vector<EvaluatedMethod>& methods, double tolerance);
+
 // Rows as dots, objects as ringed markers with their number (or name, up to 30 objects); colours by
 // "cluster", "category" or "expert" (the one with the largest mean weight).
 Figure EmbeddingFigure(const Embedding& embedding, const std::string& color);

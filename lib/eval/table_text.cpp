@@ -33,7 +33,7 @@ std::vector<std::vector<std::string>> Cells(const ResultTable& table) {
   for (const TableRow& row : table.rows) {
     lines.push_back({row.paper ? row.label + " (paper)" : row.label});
     for (std::size_t c = 0; c < row.values.size(); ++c)
-      lines.back().push_back(Cell(table.columns[c], row.values[c]));
+      lines.back().push_back(row.missing ? "missing" : Cell(table.columns[c], row.values[c]));
   }
   return lines;
 }
@@ -116,7 +116,9 @@ std::string LatexTable(const ResultTable& table) {
     if (row.paper && !paper) text += "\\midrule\n";
     paper = row.paper;
     text += LatexEscaped(row.paper ? row.label + " (paper)" : row.label);
-    for (std::size_t c = 0; c < row.values.size(); ++c)
+    if (row.missing)
+      text += fmt::format(" & \\multicolumn{{{}}}{{c}}{{missing}}", row.values.size());
+    for (std::size_t c = 0; !row.missing && c < row.values.size(); ++c)
       text += " & " + LatexCell(table.columns[c], row.values[c]);
     text += " \\\\\n";
   }
@@ -157,8 +159,11 @@ std::string CsvOf(const std::vector<ResultTable>& tables) {
     for (const TableRow& row : table.rows)
       for (std::size_t c = 0; c < row.values.size(); ++c) {
         const Estimate& e = row.values[c];
-        if (std::isnan(e.value)) continue;
-        csv.Row({table.split, fmt::format("{}", table.tolerance), row.paper ? "paper" : "ours",
+        if (std::isnan(e.value) && !row.missing) continue;
+        csv.Row({table.split, fmt::format("{}", table.tolerance),
+                 row.paper     ? "paper"
+                 : row.missing ? "missing"
+                               : "ours",
                  row.label, Info(table.columns[c]).name, number(e.value), number(e.low),
                  number(e.high)});
       }

@@ -39,21 +39,31 @@ std::vector<EpisodeRecord> PooledEpisodes(const MethodResults& method, const std
   return all;
 }
 
+// The first method that was evaluated.
+const MethodResults& FirstFound(const std::vector<MethodResults>& methods) {
+  const auto found = std::find_if(methods.begin(), methods.end(),
+                                  [](const MethodResults& m) { return !m.evals.empty(); });
+  if (found == methods.end())
+    Fail("expected an evaluation of at least one of {} methods, found none", methods.size());
+  return *found;
+}
+
 // Tables compare methods only when all were evaluated alike.
 void CheckComparable(const std::vector<MethodResults>& methods, bool rows_are_engines) {
-  const EvalFile& first = methods.front().evals.front();
+  const MethodResults& reference = FirstFound(methods);
+  const EvalFile& first = reference.evals.front();
   for (const MethodResults& method : methods)
     for (const EvalFile& eval : method.evals) {
       for (const char* split : {"train", "ood"})
         if (ObjectNames(eval, split) != ObjectNames(first, split))
           Fail("{}: expected the same {} objects as {}, found others", method.label, split,
-               methods.front().label);
+               reference.label);
       const bool same = eval.engine == first.engine && eval.substeps == first.substeps;
       if ((!same && !rows_are_engines) || eval.push != first.push)
         Fail(
             "{}: expected engine {} with {} substeps and {} N pushes as for {}, found {}, {}, {} N",
-            method.label, first.engine, first.substeps, first.push, methods.front().label,
-            eval.engine, eval.substeps, eval.push);
+            method.label, first.engine, first.substeps, first.push, reference.label, eval.engine,
+            eval.substeps, eval.push);
     }
 }
 
@@ -63,22 +73,20 @@ std::string SplitName(const std::string& split) {
 
 std::string Caption(const std::vector<MethodResults>& methods, const std::string& split,
                     double tolerance) {
-  const EvalFile& first = methods.front().evals.front();
+  const EvalFile& first = FirstFound(methods).evals.front();
   std::set<std::size_t> counts, seeds;
+  std::vector<std::string> engines;  // of every method, or once where they are the same
   for (const MethodResults& method : methods) {
+    if (method.evals.empty()) continue;
     counts.insert(PooledEpisodes(method, split, tolerance).size());
     seeds.insert(method.evals.size());
-  }
-  const std::string push =
-      first.push > 0 ? fmt::format(", pushes of {} N", first.push) : std::string();
-  // Engine and substeps of every method, or once where they are the same.
-  std::vector<std::string> engines;
-  for (const MethodResults& method : methods) {
     const EvalFile& eval = method.evals.front();
     const std::string engine = fmt::format("{} with {} substeps", eval.engine, eval.substeps);
     if (std::find(engines.begin(), engines.end(), engine) == engines.end())
       engines.push_back(engine);
   }
+  const std::string push =
+      first.push > 0 ? fmt::format(", pushes of {} N", first.push) : std::string();
   return fmt::format(
       "Successes per episode on {} {}, tolerance {} rad; {} episodes a method, {} seed{}; engine "
       "{}{}; mean with 95 % interval (bootstrap over episodes). Falls: share of "
@@ -86,6 +94,20 @@ std::string Caption(const std::vector<MethodResults>& methods, const std::string
       ObjectNames(first, split).size(), SplitName(split), tolerance, fmt::join(counts, " or "),
       fmt::join(seeds, " or "), seeds == std::set<std::size_t>{1} ? "" : "s",
       fmt::join(engines, ", "), push);
+}
+
+std::vector<Estimate> Unknown() {
+  return std::vector<Estimate>(kColumns.size(), {kUnknown, kUnknown, kUnknown});
+}
+
+TableRow RowOf(const MethodResults& method, const std::string& split, double tolerance,
+               const BootstrapOptions& bootstrap) {
+  const auto episodes = PooledEpisodes(method, split, tolerance);
+  if (episodes.empty()) return {method.label, false, Unknown(), true};
+  const Metrics metrics = ComputeMetrics(episodes, bootstrap);
+  TableRow row{method.label, false, {}};
+  for (const Metric column : kColumns) row.values.push_back(metrics[column]);
+  return row;
 }
 
 std::vector<TableRow> PaperRows(const std::vector<PaperNumber>& paper, const std::string& table,
@@ -96,8 +118,7 @@ std::vector<TableRow> PaperRows(const std::vector<PaperNumber>& paper, const std
     auto row = std::find_if(rows.begin(), rows.end(),
                             [&](const TableRow& r) { return r.label == number.method; });
     if (row == rows.end()) {
-      rows.push_back({number.method, true,
-                      std::vector<Estimate>(kColumns.size(), {kUnknown, kUnknown, kUnknown})});
+      rows.push_back({number.method, true, Unknown()});
       row = rows.end() - 1;
     }
     for (std::size_t c = 0; c < kColumns.size(); ++c)
@@ -132,19 +153,17 @@ std::vector<ResultTable> MakeTables(const std::vector<MethodResults>& methods,
                                     const BootstrapOptions& bootstrap, bool rows_are_engines) {
   CheckComparable(methods, rows_are_engines);
   std::vector<double> tolerances;
-  for (const EvalRun& run : methods.front().evals.front().runs) tolerances.push_back(run.tolerance);
+  for (const EvalRun& run : FirstFound(methods).evals.front().runs)
+    tolerances.push_back(run.tolerance);
   std::vector<ResultTable> tables;
   for (const char* split : {"train", "ood"})
     for (const double tolerance : tolerances) {
       ResultTable table{split, tolerance, kColumns, {}, Caption(methods, split, tolerance)};
-      for (const MethodResults& method : methods) {
-        const auto episodes = PooledEpisodes(method, split, tolerance);
-        if (episodes.empty()) continue;
-        const Metrics metrics = ComputeMetrics(episodes, bootstrap);
-        TableRow& row = table.rows.emplace_back(TableRow{method.label, false, {}});
-        for (const Metric column : kColumns) row.values.push_back(metrics[column]);
-      }
-      if (table.rows.empty()) continue;
+      for (const MethodResults& method : methods)
+        table.rows.push_back(RowOf(method, split, tolerance, bootstrap));
+      if (std::all_of(table.rows.begin(), table.rows.end(),
+                      [](const TableRow& row) { return row.missing; }))
+        continue;
       if (std::abs(tolerance - kPaperTolerance) < 1e-9)
         for (TableRow& row : PaperRows(paper, paper_table, split))
           table.rows.push_back(std::move(row));
@@ -163,6 +182,7 @@ std::string ObjectCsvOf(const std::vector<MethodResults>& methods,
   }
   CsvWriter csv(columns);
   for (const MethodResults& method : methods) {
+    if (method.evals.empty()) continue;
     const EvalFile& first = method.evals.front();
     for (const EvalRun& run : first.runs) {
       const auto episodes = PooledEpisodes(method, "all", run.tolerance);

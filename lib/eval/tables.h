@@ -9,7 +9,8 @@
 namespace dexremoe {
 
 // One row label and the evaluations behind it: several files with the same label are seeds of the
-// same method, and their episodes are pooled per object.
+// same method, and their episodes are pooled per object. Without any the method is missing: its
+// rows say so.
 struct MethodResults {
   std::string label;
   std::vector<EvalFile> evals;
@@ -27,6 +28,7 @@ struct TableRow {
   std::string label;
   bool paper = false;            // printed numbers, without intervals
   std::vector<Estimate> values;  // one per column; NaN where nothing is known
+  bool missing = false;          // not evaluated: all values are NaN
 };
 
 // A table of one split at one tolerance.
@@ -39,8 +41,9 @@ struct ResultTable {
 };
 
 // One table for each split and tolerance that the evaluations hold; the paper's rows (of its
-// `table`) stand below ours at tolerance 0.4 rad. Throws Error when the methods were evaluated on
-// different objects or, unless rows may be engines, with different engines or substeps.
+// `table`) stand below ours at tolerance 0.4 rad. Throws Error when all methods are missing, or
+// when they were evaluated on different objects or, unless rows may be engines, with different
+// engines or substeps.
 std::vector<ResultTable> MakeTables(const std::vector<MethodResults>& methods,
                                     const std::vector<PaperNumber>& paper,
                                     const std::string& paper_table,
@@ -49,10 +52,11 @@ std::vector<ResultTable> MakeTables(const std::vector<MethodResults>& methods,
 
 std::string MarkdownOf(const std::vector<ResultTable>& tables);
 std::string LatexOf(const std::vector<ResultTable>& tables);
-// One line per number: split,tolerance,source,method,metric,value,low,high.
+// One line per number: split,tolerance,source,method,metric,value,low,high; source is "ours",
+// "paper" or, with empty numbers, "missing".
 std::string CsvOf(const std::vector<ResultTable>& tables);
 // One line per object and method: object,category,split,tolerance,method,episodes and every object
-// metric with its interval.
+// metric with its interval. Methods that are missing have none.
 std::string ObjectCsvOf(const std::vector<MethodResults>& methods,
                         const BootstrapOptions& bootstrap);
 

@@ -1,5 +1,3 @@
-#include <xxhash.h>
-
 #include <algorithm>
 #include <filesystem>
 
@@ -9,6 +7,7 @@
 #include "io/atomic_file.h"
 #include "io/h5.h"
 #include "io/h5_internal.h"
+#include "io/hash.h"
 
 namespace dexremoe {
 namespace {
@@ -35,10 +34,8 @@ void WriteAttribute(hid_t object, const std::string& path, const std::string& na
 }
 
 std::string HashLine(const std::string& path) {
-  const std::string bytes = ReadFile(path);
-  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
-  return fmt::format("{} {:016x}{:016x}\n", std::filesystem::path(path).filename().string(),
-                     hash.high64, hash.low64);
+  return fmt::format("{} {}\n", std::filesystem::path(path).filename().string(),
+                     HashOf(ReadFile(path)));
 }
 
 hid_t CreateDataset(hid_t file, const std::string& name, hid_t type,

@@ -41,9 +41,6 @@ void WriteCheckpoint(const std::string& path, const TrainState& state,
 // another width, an example whose output this build does not reproduce.
 TrainState ReadCheckpoint(const std::string& path);
 
-// Of the policy in it, alone. Throws Error.
-PolicyStructure ReadPolicyStructure(const std::string& path);
-
 // Throws Error naming the first option that differs from those the checkpoint was written with;
 // `samples` may differ, so that a run can be made longer.
 void CheckSameOptions(const std::string& path, const std::string& options);

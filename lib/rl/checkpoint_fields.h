@@ -1,4 +1,4 @@
-// Groups of datasets of a checkpoint; used by checkpoint.cpp alone.
+// Groups of datasets of a checkpoint; used by checkpoint.cpp and policy_file.cpp alone.
 #pragma once
 
 #include <vector>
@@ -11,6 +11,11 @@ namespace dexremoe {
 
 void WriteStructure(H5Writer& file, const PolicyStructure& structure);
 PolicyStructure ReadStructure(const H5Reader& file);
+
+// The policy and what it was trained on: all that acting takes. Reading throws Error as
+// rl/policy_file.h says.
+void WritePolicyPart(H5Writer& file, const TrainState& state);
+void ReadPolicyPart(const H5Reader& file, TrainState& state);
 
 void WriteCurriculum(H5Writer& file, const CurriculumState& state);
 CurriculumState ReadCurriculum(const H5Reader& file);

@@ -1,11 +1,13 @@
 #include "rl/method_card.h"
 
+#include <filesystem>
+
 #include "base/error.h"
 #include "policy/mlore_layer.h"
 #include "policy/policy.h"
 #include "policy/sparse_moe.h"
 #include "policy/switch_moe.h"
-#include "rl/checkpoint.h"
+#include "rl/policy_file.h"
 #include "rl/trainable.h"
 
 namespace dexremoe {
@@ -74,12 +76,17 @@ MethodCard DescribeMethod(const std::string& method, const PolicyStructure& stru
           CurriculumOf(method, ppo)};
 }
 
-std::string MethodTable(const std::vector<std::string>& checkpoints) {
+std::string MethodTable(const std::vector<std::string>& checkpoints, bool missing) {
   std::string text =
       "| method | inputs | network | parameters | in training | own losses | curriculum | samples "
       "|\n|---|---|---|--:|--:|---|---|--:|\n";
   for (const std::string& path : checkpoints) {
-    const TrainState state = ReadCheckpoint(path);
+    if (missing && !std::filesystem::exists(path)) {
+      text += fmt::format("| {} | missing | | | | | | |\n",
+                          std::filesystem::path(path).stem().string());
+      continue;
+    }
+    const TrainState state = ReadPolicy(path);
     const auto policy = MakePolicy<float>(state.structure);
     const MethodCard& card = state.card;
     text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", state.stage, card.inputs,

@@ -20,7 +20,8 @@ struct MethodCard {
 MethodCard DescribeMethod(const std::string& method, const PolicyStructure& structure,
                           const PpoOptions& ppo);
 
-// The checkpoints' methods as a Markdown table. Throws Error naming the file that is none.
-std::string MethodTable(const std::vector<std::string>& checkpoints);
+// The checkpoints' methods as a Markdown table. Throws Error naming the file that is none; with
+// `missing`, files that are not there get a row that says so.
+std::string MethodTable(const std::vector<std::string>& checkpoints, bool missing = false);
 
 }  // namespace dexremoe

@@ -6,8 +6,8 @@
 #include "base/random.h"
 #include "policy/policy.h"
 #include "policy/shape_table.h"
-#include "rl/checkpoint.h"
 #include "rl/inference.h"
+#include "rl/policy_file.h"
 
 namespace dexremoe {
 
@@ -32,7 +32,7 @@ PolicyRunner::PolicyRunner(const std::string& path, const std::vector<TaskObject
                            ThreadPool& pool)
     : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
-  m.state = ReadCheckpoint(path);
+  m.state = ReadPolicy(path);
   // Whatever it was trained in: a file gives the same actions on every machine.
   m.state.structure.precision = "f32";
   m.policy = MakePolicy<float>(m.state.structure);

@@ -1,4 +1,4 @@
-// A trained policy, read from a checkpoint and ready to act: evaluation, rendering, gate plots.
+// A trained policy, read from a file and ready to act: evaluation, rendering, gate plots.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace dexremoe {
 
 class PolicyRunner {
  public:
-  // Reads any dexremoe.checkpoint (base, expert or gate). `objects` need their features loaded;
-  // they may differ from those of the training (out of distribution) and may be empty when only
-  // WeightsOf is used. Their features are what ReadPolicyStructure(path).cloud_points asks for.
-  // Computes in float32, also what was trained in bfloat16. `pool` must outlive
-  // the runner. Throws Error naming file and field.
+  // Reads any dexremoe.checkpoint (base, expert or gate) or dexremoe.weights. `objects` need their
+  // features loaded; they may differ from those of the training (out of distribution) and may be
+  // empty when only WeightsOf is used. Their features are what
+  // ReadPolicyStructure(path).cloud_points asks for. Computes in float32, also what was trained in
+  // bfloat16. `pool` must outlive the runner. Throws Error naming file and field.
   PolicyRunner(const std::string& path, const std::vector<TaskObject>& objects, ThreadPool& pool);
   ~PolicyRunner();
   PolicyRunner(const PolicyRunner&) = delete;

@@ -123,6 +123,34 @@ TEST(Tables, MethodsOfOtherObjectsOrEnginesAreRefused) {
               HasSubstr("substeps"));
 }
 
+TEST(Tables, AMethodWithoutEvaluationsIsMissingInEveryTable) {
+  const std::vector<MethodResults> methods = {
+      {"Gone", {}}, {"Base", {SampleEval(5)}}, {"Also gone", {}}};
+  const auto tables = MakeTables(methods, {}, "1", {50, 1});
+  ASSERT_EQ(tables.size(), 4u);
+  for (const ResultTable& table : tables) {
+    ASSERT_EQ(table.rows.size(), 3u);
+    EXPECT_TRUE(table.rows[0].missing && table.rows[2].missing);
+    EXPECT_FALSE(table.rows[1].missing);
+    EXPECT_THAT(table.caption, HasSubstr("1 seed;"));  // counts what is there alone
+  }
+  EXPECT_THAT(MarkdownOf(tables), HasSubstr("| Gone "));
+  EXPECT_THAT(MarkdownOf(tables), HasSubstr(" missing |"));
+  EXPECT_THAT(LatexOf(tables), HasSubstr("Also gone & \\multicolumn{8}{c}{missing} \\\\"));
+  EXPECT_THAT(CsvOf(tables), HasSubstr("train,0.4,missing,Gone,s_min,,,\n"));
+  // The others' numbers do not depend on who is missing.
+  const auto alone = MakeTables({methods[1]}, {}, "1", {50, 1});
+  for (std::size_t c = 0; c < alone[0].columns.size(); ++c)
+    EXPECT_EQ(tables[0].rows[1].values[c].value, alone[0].rows[0].values[c].value);
+}
+
+TEST(Tables, AllMissingIsAnError) {
+  EXPECT_EQ(Message([&] {
+              MakeTables({{"A", {}}, {"B", {}}}, {}, "1", {1, 1});
+            }),
+            "expected an evaluation of at least one of 2 methods, found none");
+}
+
 TEST(Tables, RowsMayBeEngines) {
   EvalFile other = SampleEval(5);
   other.engine = "mujoco";

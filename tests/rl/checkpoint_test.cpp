@@ -7,6 +7,7 @@
 #include "fixture.h"
 #include "io/atomic_file.h"
 #include "rl/checkpoint_fields.h"
+#include "rl/policy_file.h"
 
 namespace dexremoe {
 namespace {

@@ -1,4 +1,4 @@
-# `make ablate`: which parts of the desk recipe earn their place. Each is switched off in turn, on the cube of
+# `make ablate-recipe`: which parts of the desk recipe earn their place. Each is switched off in turn, on the cube of
 # `make cube`, over several seeds; the table shows the deterministic policies on the paper's task.
 
 ABLATE_SAMPLES ?= 30000000
@@ -25,13 +25,13 @@ switch_friction_1         := --task.friction_range=0.9,1.1
 SWITCHES ?= $(sort $(patsubst switch_%,%,$(filter switch_%,$(.VARIABLES))))
 ABLATED  := $(foreach s,$(SWITCHES),$(foreach n,$(ABLATE_SEEDS),$(OUT)/$(s)-$(n)))
 
-.PHONY: ablate ablated
-ablate: deps  ## train the cube without each part of the desk recipe in turn (hours)
+.PHONY: ablate-recipe ablated-recipe
+ablate-recipe: deps  ## train the cube without each part of the desk recipe in turn (hours)
 	+@$(MAKE) $(JOBS) --no-print-directory build
 	$(BIN)/make_objects --recipes=data/shapes --out=meshes/shapes
 	+@$(MAKE) -j1 --no-print-directory EXPERIMENT=1 OBJECTS=meshes/shapes OUT=results/ablate \
-	  CONFIG="data/config/desk.toml data/config/cube.toml" ablated
-ablated: $(OUT)/tables/ablate.md
+	  CONFIG="data/config/desk.toml data/config/cube.toml" ablated-recipe
+ablated-recipe: $(OUT)/tables/ablate.md
 
 # NAME-SEED.h5 from the switch and seed in its name; the curves lie beside it.
 switch_of = $(switch_$(firstword $(subst -, ,$(1))))

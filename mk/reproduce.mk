@@ -1,0 +1,42 @@
+# Shipped weights, and `make reproduce`: all that follows from them, with nothing trained.
+
+PRETRAINED := results/pretrained
+REPRODUCED := results/reproduced
+
+# What is shipped of a run: the policies of all tables, the shape network, and the learning curves,
+# which nothing but training can make.
+SHIPPED = $(wildcard $(patsubst %,$(OUT)/%.h5,shape_net $(METHODS) $(VARIANTS)))
+SHIPPED_CURVES = $(wildcard $(CURVES) $(METHOD_CURVES) $(ADR_CURVE))
+
+.PHONY: pretrained
+pretrained: deps  ## strip the policies of the run OUT to weights, for make reproduce: results/pretrained
+	@[ -f $(OUT)/gate.h5 ] || { echo '$(OUT)/gate.h5 is not there: train first (make quick ablations SCALE=$(SCALE))' >&2; exit 1; }
+	+@$(MAKE) $(JOBS) --no-print-directory $(BIN)/export_weights
+	@rm -rf $(PRETRAINED).tmp && mkdir -p $(PRETRAINED).tmp/curves
+	@cp $(OUT)/settings.txt $(PRETRAINED).tmp/ && cp $(SHIPPED_CURVES) $(PRETRAINED).tmp/curves/
+	@echo 'file,method,samples,seed,sha256' >$(PRETRAINED).tmp/manifest.csv
+	@seed=$$(sed -n 's/^SEED=//p' $(OUT)/settings.txt); \
+	for file in $(notdir $(SHIPPED)); do weights=$(PRETRAINED).tmp/$$file; \
+	  if [ $$file = shape_net.h5 ]; then cp $(OUT)/$$file $$weights; about=shape_net,,$$seed; \
+	  else about=$$($(BIN)/export_weights --policy=$(OUT)/$$file --out=$$weights); fi; \
+	  echo "$$file,$$about,$$(sha256sum <$$weights | cut -d' ' -f1)" >>$(PRETRAINED).tmp/manifest.csv; \
+	done
+	@rm -rf $(PRETRAINED) && mv $(PRETRAINED).tmp $(PRETRAINED)
+	@du -sh $(PRETRAINED)
+
+# The weights are there and whole.
+.PHONY: shipped
+shipped:
+	@[ -f $(PRETRAINED)/manifest.csv ] || { echo '$(PRETRAINED) is empty: train a run (make quick ablations SCALE=small), then make pretrained SCALE=small' >&2; exit 1; }
+	@tail -n +2 $(PRETRAINED)/manifest.csv | sed -E 's|^([^,]*),.*,([^,]*)$$|\2  $(PRETRAINED)/\1|' | sha256sum --check --quiet
+
+# The settings that the weights were trained with; how they are checked is up to who calls.
+RECORDED = $(shell grep -v '^CHECK=' $(PRETRAINED)/settings.txt | sed "s/.*/'&'/")
+
+.PHONY: reproduce reproduced
+reproduce: shipped deps  ## evaluate the shipped weights; all tables, figures and films of them, nothing trained
+	+@$(MAKE) $(JOBS) --no-print-directory build
+	@mkdir -p $(REPRODUCED) && cp -ru $(PRETRAINED)/*.h5 $(PRETRAINED)/curves $(REPRODUCED)/
+	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 EXISTING=1 OUT=$(REPRODUCED) $(RECORDED) reproduced
+reproduced: $(TABLES) $(FIGURES)
+	@printf '\nDone. Look at:\n'; printf '  %s\n' $^
