@@ -32,6 +32,7 @@ struct EvalFile {
   std::uint64_t seed = 0;
   double push = 0;                       // N; 0 = no disturbance
   std::string category_input = "label";  // or "predicted" or "soft": EvalOptions::category
+  bool jams_known = true;                // false for files older than EpisodeRecord::still
   std::vector<EvalObject> objects;
   std::vector<EvalRun> runs;
 };

@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "eval/evaluation.h"
+#include "eval/outcome.h"
 
 namespace dexremoe {
 namespace {
@@ -36,8 +37,6 @@ const EpisodeRecord* FindRecord(const EvalRun& run, const EpisodeJob& job) {
   return nullptr;
 }
 
-const char* EndName(EpisodeEnd end) { return end == EpisodeEnd::kFall ? "fall" : "timeout"; }
-
 // Names the episodes and checks that each went as it did in the evaluation.
 void Describe(const EvalSetup& setup, const EvalRun& run,
               const std::vector<EpisodeRecord>& replayed, std::vector<EpisodeTrace>& traces) {
@@ -54,7 +53,7 @@ void Describe(const EvalSetup& setup, const EvalRun& run,
     traces[i].object = object.name;
     traces[i].category = kCategories[object.category];
     traces[i].episode = again.episode;
-    traces[i].end = EndName(again.end);
+    traces[i].end = OutcomeName(OutcomeOf(again));
     traces[i].successes = again.successes;
   }
 }
