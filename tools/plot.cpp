@@ -1,5 +1,5 @@
-// Figures through gnuplot: learning curves, successes per object and against samples, the map of
-// the gate's weights.
+// Figures through gnuplot: learning curves, successes per object and against samples, pushes or
+// sizes, the map of the gate's weights.
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/options.h"
-#include "eval/plots.h"
+#include "eval/study_plots.h"
 
 namespace {
 
@@ -15,24 +15,30 @@ using namespace dexremoe;
 
 struct PlotOptions {
   std::string kind, out, x = "samples", color = "cluster";
-  std::vector<std::string> in, labels, columns;
+  std::vector<std::string> in, labels, columns, missing;
+  std::vector<double> values;
   double smooth = 0.05, tolerance = 0.4;
+  std::uint64_t seed = 1;
 
   void Register(Options& options) {
     options.Add("kind", &kind, "what to draw")
         .Required()
-        .Choices({"curves", "bars", "growth", "tsne"});
+        .Choices({"curves", "bars", "sorted", "hardest", "others", "growth", "study", "tsne"});
     options
-        .Add("in", &in, "curves: CSV files; bars, growth: dexremoe.eval; tsne: dexremoe.embedding")
+        .Add("in", &in,
+             "curves: CSV files; tsne: dexremoe.embedding; else dexremoe.eval, ours last")
         .Required();
     options.Add("labels", &labels, "names of the files in the legend; the file names when absent");
     options.Add("out", &out, "figure without ending: OUT.png, .pdf, .dat and .gp are written")
         .Required()
         .NotStored();
-    options.Add("x", &x, "curves: column on the abscissa");
+    options.Add("missing", &missing, "methods without an evaluation, to be named so");
+    options.Add("x", &x, "curves: column on the abscissa; study: its label");
+    options.Add("values", &values, "study: abscissa of each file");
+    options.Add("seed", &seed, "others: seed of the choice");
     options.Add("columns", &columns, "curves: one panel each; the usual ones when absent");
     options.Add("smooth", &smooth, "curves: smooth over this part of the rows").Range(0, 1);
-    options.Add("tolerance", &tolerance, "bars, growth: which tolerance, rad").Range(0, 3.15);
+    options.Add("tolerance", &tolerance, "of evaluations: which tolerance, rad").Range(0, 3.15);
     options.Add("color", &color, "tsne: colour by").Choices({"cluster", "category", "expert"});
   }
 };
@@ -48,6 +54,23 @@ std::vector<std::string> Labels(const PlotOptions& o) {
     throw UsageError(fmt::format("--labels: expected as many as files in --in ({}), found {}",
                                  o.in.size(), o.labels.size()));
   return o.labels;
+}
+
+Figure DrawMethods(const PlotOptions& o, const std::vector<EvaluatedMethod>& methods) {
+  constexpr int kHardest = 5, kOthers = 10;  // objects (paper, figure 5)
+  if (o.kind == "growth") return GrowthFigure(methods, o.tolerance);
+  if (o.kind == "sorted") return SortedFigure(methods, o.tolerance, o.missing);
+  if (o.kind == "hardest")
+    return ObjectPanelsFigure(methods, o.tolerance, HardestObjects(methods, o.tolerance, kHardest),
+                              o.missing);
+  if (o.kind == "others")
+    return ObjectPanelsFigure(methods, o.tolerance,
+                              RandomOtherObjects(methods, o.tolerance, kOthers, o.seed), o.missing);
+  if (o.kind == "bars") return BarsFigure(methods, o.tolerance);
+  if (o.values.size() != methods.size())
+    throw UsageError(fmt::format("--values: expected as many as files in --in ({}), found {}",
+                                 methods.size(), o.values.size()));
+  return StudyFigure(methods, o.values, o.x, o.tolerance, o.missing);
 }
 
 Figure Draw(const PlotOptions& o) {
@@ -66,7 +89,7 @@ Figure Draw(const PlotOptions& o) {
       methods.push_back({labels[i], ReadEval(o.in[i])});
   }
   if (o.kind == "curves") return CurvesFigure(curves, o.x, o.columns, o.smooth);
-  return o.kind == "growth" ? GrowthFigure(methods, o.tolerance) : BarsFigure(methods, o.tolerance);
+  return DrawMethods(o, methods);
 }
 
 }  // namespace
