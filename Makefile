@@ -40,6 +40,7 @@ include mk/debian.mk
 include mk/bench.mk
 include mk/experiment.mk
 include mk/baselines.mk
+include mk/studies.mk
 include mk/ablate.mk
 
 .PHONY: help

@@ -58,7 +58,7 @@ std::vector<std::string> Labels(const PlotOptions& o) {
 
 Figure DrawMethods(const PlotOptions& o, const std::vector<EvaluatedMethod>& methods) {
   constexpr int kHardest = 5, kOthers = 10;  // objects (paper, figure 5)
-  if (o.kind == "growth") return GrowthFigure(methods, o.tolerance);
+  if (o.kind == "growth") return GrowthFigure(methods, o.tolerance, o.missing);
   if (o.kind == "sorted") return SortedFigure(methods, o.tolerance, o.missing);
   if (o.kind == "hardest")
     return ObjectPanelsFigure(methods, o.tolerance, HardestObjects(methods, o.tolerance, kHardest),

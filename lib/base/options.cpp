@@ -23,12 +23,13 @@ namespace {
 constexpr std::array<std::string_view, 16> kSections = {
     "load", "scale",  "decompose", "cloud", "shape", "hand", "sim",  "grasp",
     "task", "random", "policy",    "ppo",   "adr",   "eval", "tsne", "render"};
-constexpr std::array<std::string_view, 25> kTools = {
+constexpr std::array<std::string_view, 26> kTools = {
     "make_objects",   "scale_mesh",     "decompose",   "sample_cloud", "train_shape",
     "describe_shape", "hand_info",      "find_grasps", "train_base",   "train_expert",
     "train_gate",     "train_baseline", "evaluate",    "tabulate",     "list_methods",
     "embed_gate",     "plot",           "render",      "h5_info",      "h5_diff",
-    "mesh_info",      "list_objects",   "bench_sim",   "validate_sim", "bench_decompose"};
+    "mesh_info",      "list_objects",   "bench_sim",   "validate_sim", "bench_decompose",
+    "rank_objects"};
 
 template <typename List>
 bool Contains(const List& list, std::string_view word) {

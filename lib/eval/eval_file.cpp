@@ -153,7 +153,7 @@ void WriteEval(const std::string& path, const EvalFile& eval, const Provenance& 
   std::vector<double> tolerance;
   for (const EvalRun& run : eval.runs) tolerance.push_back(run.tolerance);
   file.WriteString("policy", eval.policy, {"", "", "policy file"});
-  file.WriteScalar("samples", eval.samples, {"1", "", "that its training stage has seen"});
+  file.WriteScalar("samples", eval.samples, {"1", "", "that its training has seen"});
   file.WriteString("engine", eval.engine, {"", "", "simulation engine"});
   file.WriteScalar<std::int32_t>("substeps", eval.substeps,
                                  {"1", "", "physics steps per control step"});

@@ -26,7 +26,7 @@ struct EvalObject {
 
 struct EvalFile {
   std::string policy;        // file name
-  std::int64_t samples = 0;  // that its training stage has seen
+  std::int64_t samples = 0;  // that its training has seen; evaluate --earlier adds stages
   std::string engine;        // simulation engine
   int substeps = 0;          // physics steps per control step
   std::uint64_t seed = 0;

@@ -100,11 +100,12 @@ Figure StudyFigure(const std::vector<EvaluatedMethod>& methods, const std::vecto
   return figure;
 }
 
-Figure GrowthFigure(const std::vector<EvaluatedMethod>& methods, double tolerance) {
+Figure GrowthFigure(const std::vector<EvaluatedMethod>& methods, double tolerance,
+                    const std::vector<std::string>& missing) {
   std::vector<double> millions;
   for (const EvaluatedMethod& method : methods)
     millions.push_back(1e-6 * static_cast<double>(method.eval.samples));
-  return StudyFigure(methods, millions, "samples (millions)", tolerance, {});
+  return StudyFigure(methods, millions, "samples (millions)", tolerance, missing);
 }
 
 }  // namespace dexremoe

@@ -1,5 +1,6 @@
 // Replays chosen episodes and keeps every control step.
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "base/check.h"
@@ -58,9 +59,40 @@ void Describe(const EvalSetup& setup, const EvalRun& run,
   }
 }
 
+// See ChooseEpisodes.
+EpisodeJob TypicalEpisode(const EvalRun& run, int object) {
+  std::array<std::vector<const EpisodeRecord*>, kNumOutcomes> by_outcome;
+  std::vector<const EpisodeRecord*> all;
+  for (const EpisodeRecord& e : run.episodes) {
+    if (e.object != object) continue;
+    by_outcome[static_cast<std::size_t>(OutcomeOf(e))].push_back(&e);
+    all.push_back(&e);
+  }
+  const auto& falls = by_outcome[static_cast<std::size_t>(Outcome::kFall)];
+  const auto& jams = by_outcome[static_cast<std::size_t>(Outcome::kJam)];
+  std::vector<const EpisodeRecord*> kind = falls.size() >= jams.size() ? falls : jams;
+  if (kind.empty()) kind = all;
+  std::stable_sort(kind.begin(), kind.end(),
+                   [](const auto* a, const auto* b) { return a->length < b->length; });
+  return {object, kind[kind.size() / 2]->episode};
+}
+
+std::vector<EpisodeJob> TypicalEpisodes(const EvalRun& run, int count) {
+  std::vector<const ObjectMetrics*> order;
+  for (const ObjectMetrics& m : run.metrics.objects) order.push_back(&m);
+  std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) {
+    return (*a)[ObjectMetric::kSuccesses].value < (*b)[ObjectMetric::kSuccesses].value;
+  });
+  std::vector<EpisodeJob> chosen;
+  for (const ObjectMetrics* m : order)
+    if (static_cast<int>(chosen.size()) < count) chosen.push_back(TypicalEpisode(run, m->object));
+  return chosen;
+}
+
 }  // namespace
 
 std::vector<EpisodeJob> ChooseEpisodes(const EvalRun& run, int count, const std::string& choice) {
+  if (choice == "typical") return TypicalEpisodes(run, count);
   std::vector<const EpisodeRecord*> order;
   for (const EpisodeRecord& e : run.episodes) order.push_back(&e);
   if (choice == "best")

@@ -18,6 +18,10 @@ Figure StudyFigure(const std::vector<EvaluatedMethod>& methods, const std::vecto
                    const std::string& x_label, double tolerance,
                    const std::vector<std::string>& missing);
 
+// The same against the samples that the evaluated policies have seen.
+Figure GrowthFigure(const std::vector<EvaluatedMethod>& methods, double tolerance,
+                    const std::vector<std::string>& missing);
+
 // A panel for every method but the last: S_i with 95 % intervals beside those of the last, training
 // objects in ascending order under the last. Throws Error as BarsFigure.
 Figure SortedFigure(const std::vector<EvaluatedMethod>& methods, double tolerance,
