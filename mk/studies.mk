@@ -5,6 +5,7 @@
 # Evaluations here take few episodes on lanes, except where they stand beside those of the table.
 
 STUDY_EPISODES ?= 10
+STUDY_STARTS   ?= 40
 PUSHES         ?= 0 0.5 1 2 4
 SIZES          ?= 0.6 0.7 0.8 0.9 1.0
 
@@ -78,7 +79,7 @@ $(foreach s,$(SIZES),$(foreach name,$(OBJECT_NAMES),$(eval $(call size_rule,$(s)
 
 $(SIZED_OBJECTS:%=%/grasps.log): %/grasps.log: %/parts.h5 $(OUT)/settings.txt | $(BIN)/find_grasps
 	@rm -f $*/grasps.h5
-	$(BIN)/find_grasps $(COMMON) $(SIM) --mesh=$*/mesh.h5 --parts=$< --out=$*/grasps.h5 >$@.tmp 2>&1 || \
+	$(BIN)/find_grasps $(COMMON) $(SIM) --grasp.count=$(STUDY_STARTS) --mesh=$*/mesh.h5 --parts=$< --out=$*/grasps.h5 >$@.tmp 2>&1 || \
 	  grep -q 'no grasp found' $@.tmp || { cat $@.tmp; exit 1; }
 	@mv $@.tmp $@
 $(SIZES:%=$(SIZED)/%.csv): $(SIZED)/%.csv: $(OUT)/objects.csv $(SIZED_OBJECTS:%=%/grasps.log) $(SIZED_OBJECTS:%=%/shape.h5)

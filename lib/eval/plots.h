@@ -33,7 +33,7 @@ const EvalRun& RunAt(const EvaluatedMethod& method, double tolerance);
 // tolerance or the objects differ.
 Figure BarsFigure(const std::vector<EvaluatedMethod>& methods, double tolerance);
 
-// Rows as dots, objects as ringed markers with their number (or name, up to 30 objects); colours by
+// Rows as dots, objects as ringed markers with their number (and name, up to 30 objects); colours by
 // "cluster", "category" or "expert" (the one with the largest mean weight).
 Figure EmbeddingFigure(const Embedding& embedding, const std::string& color);
 
