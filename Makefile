@@ -41,6 +41,7 @@ include mk/bench.mk
 include mk/experiment.mk
 include mk/baselines.mk
 include mk/ablations.mk
+include mk/studies.mk
 include mk/products.mk
 include mk/reproduce.mk
 include mk/ablate_recipe.mk

@@ -95,13 +95,14 @@ $(OBJDIR)/$(1)/mesh.h5: $(MESH_$(1)) $(CONFIG) | $(BIN)/scale_mesh
 endef
 $(foreach name,$(OBJECT_NAMES),$(eval $(call object_rules,$(name))))
 
-$(OBJDIR)/%/parts.h5: $(OBJDIR)/%/mesh.h5 | $(BIN)/decompose
+# Wherever a mesh.h5 stands: $(OBJDIR), or the sizes of mk/studies.mk.
+data/objects/%/parts.h5: data/objects/%/mesh.h5 | $(BIN)/decompose
 	$(BIN)/decompose $(CONFIG:%=--config=%) --mesh=$< --out=$@ >$(@D)/decompose.log
-$(OBJDIR)/%/cloud.h5: $(OBJDIR)/%/mesh.h5 | $(BIN)/sample_cloud
+data/objects/%/cloud.h5: data/objects/%/mesh.h5 | $(BIN)/sample_cloud
 	$(BIN)/sample_cloud $(COMMON) --mesh=$< --out=$@ >$(@D)/cloud.log
-$(OBJDIR)/%/shape.h5: $(OBJDIR)/%/cloud.h5 $(OUT)/shape_net.h5 | $(BIN)/describe_shape
+data/objects/%/shape.h5: data/objects/%/cloud.h5 $(OUT)/shape_net.h5 | $(BIN)/describe_shape
 	$(BIN)/describe_shape --net=$(OUT)/shape_net.h5 --cloud=$< --out=$@ >$(@D)/shape.log
-$(OBJDIR)/%/grasps.h5: $(OBJDIR)/%/parts.h5 $(OUT)/settings.txt | $(BIN)/find_grasps
+data/objects/%/grasps.h5: data/objects/%/parts.h5 $(OUT)/settings.txt | $(BIN)/find_grasps
 	$(BIN)/find_grasps $(COMMON) $(SIM) --mesh=$(@D)/mesh.h5 --parts=$< --out=$@ | tee $(@D)/grasps.log
 
 ifndef EXISTING

@@ -22,6 +22,7 @@ constexpr char kHold[] = "hold";  // for --policy
 struct EvaluateOptions {
   std::string policy, objects, split = "train", out;
   std::string trace, trace_choice = "best";
+  std::vector<std::string> earlier;
   int trace_episodes = 4;
   std::uint64_t seed = 1;
   int workers = 0;
@@ -33,14 +34,18 @@ struct EvaluateOptions {
   void Register(Options& options) {
     options.Add("policy", &policy, "checkpoint or weights of any stage or method; hold: no actions")
         .Required();
+    options.Add("earlier", &earlier,
+                "checkpoints of the stages before, whose samples count with the policy's");
     options.Add("objects", &objects, "objects.csv").Required();
     options.Add("split", &split, "which objects").Choices({"train", "ood", "all"});
     options.Add("out", &out, "evaluation to write (dexremoe.eval)").Required().NotStored();
     options.Add("trace", &trace, "also record episodes at the first tolerance into this file")
         .NotStored();
     options.Add("trace_episodes", &trace_episodes, "how many to record").Range(1, 1000);
-    options.Add("trace_choice", &trace_choice, "which to record; each object once, then again")
-        .Choices({"best", "worst", "first"});
+    options
+        .Add("trace_choice", &trace_choice,
+             "which to record; each object once, then again (typical: once)")
+        .Choices({"best", "worst", "first", "typical"});
     options.Add("seed", &seed, "seed of starts, goals, pushes and intervals");
     options.Add("workers", &workers, "threads; 0 = all processors").NotStored();
     eval.Register(options);
@@ -117,6 +122,7 @@ void Run(const EvaluateOptions& o, const Options& options) {
         o.task.goal_angle, o.task.velocity_tolerance);
   EvalFile file = DescribeEval(o, setup);
   if (runner) file.samples = runner->samples();
+  for (const std::string& stage : o.earlier) file.samples += ReadCheckpoint(stage).samples;
   file.runs = Evaluate(setup, o.eval, act, pool);
   WriteEval(o.out, file, provenance);
   std::fputs(ReportOf(file).c_str(), stdout);

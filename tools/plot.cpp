@@ -1,5 +1,6 @@
-// Figures through gnuplot: learning curves, successes per object and against samples, the map of
-// the gate's weights.
+// Figures through gnuplot: learning curves, successes per object and against samples, pushes or
+// sizes, the map of the gate's weights.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -7,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/options.h"
-#include "eval/plots.h"
+#include "eval/study_plots.h"
 
 namespace {
 
@@ -16,28 +17,33 @@ using namespace dexremoe;
 struct PlotOptions {
   std::string kind, out, x = "samples", color = "cluster";
   std::vector<std::string> in, labels, columns;
+  std::vector<double> values;
   double smooth = 0.05, tolerance = 0.4;
+  std::uint64_t seed = 1;
   bool missing = false;
+  std::vector<std::string> gone;  // labels of files that are not there
 
   void Register(Options& options) {
     options.Add("kind", &kind, "what to draw")
         .Required()
-        .Choices({"curves", "bars", "growth", "ablation", "tsne"});
+        .Choices({"curves", "bars", "sorted", "hardest", "others", "growth", "study", "ablation",
+                  "tsne"});
     options
         .Add("in", &in,
-             "curves: CSV files; bars, growth, ablation: dexremoe.eval; tsne: dexremoe.embedding")
+             "curves: CSV files; tsne: dexremoe.embedding; else dexremoe.eval, ours last")
         .Required();
     options.Add("labels", &labels, "names of the files in the legend; the file names when absent");
-    options.Add("missing", &missing,
-                "files that are not there are named in the figure, instead of an error");
     options.Add("out", &out, "figure without ending: OUT.png, .pdf, .dat and .gp are written")
         .Required()
         .NotStored();
-    options.Add("x", &x, "curves: column on the abscissa");
+    options.Add("missing", &missing,
+                "files that are not there are named in the figure, instead of an error");
+    options.Add("x", &x, "curves: column on the abscissa; study: its label");
+    options.Add("values", &values, "study: abscissa of each file");
+    options.Add("seed", &seed, "others: seed of the choice");
     options.Add("columns", &columns, "curves: one panel each; the usual ones when absent");
     options.Add("smooth", &smooth, "curves: smooth over this part of the rows").Range(0, 1);
-    options.Add("tolerance", &tolerance, "bars, growth, ablation: which tolerance, rad")
-        .Range(0, 3.15);
+    options.Add("tolerance", &tolerance, "of evaluations: which tolerance, rad").Range(0, 3.15);
     options.Add("color", &color, "tsne: colour by").Choices({"cluster", "category", "expert"});
   }
 };
@@ -55,18 +61,46 @@ std::vector<std::string> Labels(const PlotOptions& o) {
   return o.labels;
 }
 
-// Takes files that are not there out of --in and --labels; returns their labels.
-std::vector<std::string> TakeMissing(PlotOptions& o) {
-  std::vector<std::string> in, labels, gone;
+// Takes files that are not there out of --in, with their labels and values.
+void TakeMissing(PlotOptions& o) {
+  std::vector<std::string> in, labels;
+  std::vector<double> values;
   for (std::size_t i = 0; i < o.in.size(); ++i) {
-    const bool there = !o.missing || std::filesystem::exists(o.in[i]);
-    (there ? labels : gone).push_back(o.labels[i]);
-    if (there) in.push_back(o.in[i]);
+    if (o.missing && !std::filesystem::exists(o.in[i])) {
+      if (!std::ranges::count(o.gone, o.labels[i])) o.gone.push_back(o.labels[i]);
+      continue;
+    }
+    in.push_back(o.in[i]);
+    labels.push_back(o.labels[i]);
+    if (i < o.values.size()) values.push_back(o.values[i]);
   }
   if (in.empty()) Fail("expected at least one of {} files in --in, found none", o.in.size());
   o.in = in;
   o.labels = labels;
-  return gone;
+  o.values = values;
+}
+
+Figure Noted(Figure figure, const PlotOptions& o) {
+  NoteMissing(o.gone, figure);
+  return figure;
+}
+
+Figure DrawMethods(const PlotOptions& o, const std::vector<EvaluatedMethod>& methods) {
+  constexpr int kHardest = 5, kOthers = 10;  // objects (paper, figure 5)
+  if (o.kind == "growth") return GrowthFigure(methods, o.tolerance, o.gone);
+  if (o.kind == "sorted") return SortedFigure(methods, o.tolerance, o.gone);
+  if (o.kind == "hardest")
+    return ObjectPanelsFigure(methods, o.tolerance, HardestObjects(methods, o.tolerance, kHardest),
+                              o.gone);
+  if (o.kind == "others")
+    return ObjectPanelsFigure(methods, o.tolerance,
+                              RandomOtherObjects(methods, o.tolerance, kOthers, o.seed), o.gone);
+  if (o.kind == "ablation") return Noted(AblationFigure(methods, o.tolerance), o);
+  if (o.kind == "bars") return Noted(BarsFigure(methods, o.tolerance), o);
+  if (o.values.size() != methods.size())
+    throw UsageError(fmt::format("--values: expected as many as files in --in ({}), found {}",
+                                 methods.size(), o.values.size()));
+  return StudyFigure(methods, o.values, o.x, o.tolerance, o.gone);
 }
 
 Figure Draw(const PlotOptions& o) {
@@ -84,9 +118,8 @@ Figure Draw(const PlotOptions& o) {
     else
       methods.push_back({labels[i], ReadEval(o.in[i])});
   }
-  if (o.kind == "curves") return CurvesFigure(curves, o.x, o.columns, o.smooth);
-  if (o.kind == "ablation") return AblationFigure(methods, o.tolerance);
-  return o.kind == "growth" ? GrowthFigure(methods, o.tolerance) : BarsFigure(methods, o.tolerance);
+  if (o.kind != "curves") return DrawMethods(o, methods);
+  return Noted(CurvesFigure(curves, o.x, o.columns, o.smooth), o);
 }
 
 }  // namespace
@@ -100,10 +133,8 @@ int main(int argc, char** argv) {
   plot.Register(options);
   return RunTool(options, argc, argv, [&] {
     plot.labels = Labels(plot);
-    const std::vector<std::string> gone = TakeMissing(plot);
-    Figure figure = Draw(plot);
-    NoteMissing(gone, figure);
-    WriteFigure(plot.out, figure);
+    TakeMissing(plot);
+    WriteFigure(plot.out, Draw(plot));
     std::printf("%s.png\n%s.pdf\n", plot.out.c_str(), plot.out.c_str());
   });
 }

@@ -23,13 +23,13 @@ namespace {
 constexpr std::array<std::string_view, 16> kSections = {
     "load", "scale",  "decompose", "cloud", "shape", "hand", "sim",  "grasp",
     "task", "random", "policy",    "ppo",   "adr",   "eval", "tsne", "render"};
-constexpr std::array<std::string_view, 27> kTools = {
+constexpr std::array<std::string_view, 28> kTools = {
     "make_objects",   "scale_mesh",     "decompose",      "sample_cloud",  "train_shape",
     "describe_shape", "hand_info",      "find_grasps",    "train_base",    "train_expert",
     "train_gate",     "train_baseline", "export_weights", "evaluate",      "tabulate",
     "list_methods",   "embed_gate",     "plot",           "render",        "h5_info",
-    "h5_diff",        "mesh_info",      "list_objects",   "group_objects", "bench_sim",
-    "validate_sim",   "bench_decompose"};
+    "h5_diff",        "mesh_info",      "list_objects",   "group_objects", "rank_objects",
+    "bench_sim",      "validate_sim",   "bench_decompose"};
 
 template <typename List>
 bool Contains(const List& list, std::string_view word) {

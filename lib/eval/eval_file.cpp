@@ -33,6 +33,11 @@ void WriteEpisodes(H5Writer& file, const EvalFile& eval) {
                             [](std::size_t, const E& e) { return e.successes; });
   WriteColumn<std::uint8_t>(file, eval, "end", "1", "1 fall, 2 timeout",
                             [](std::size_t, const E& e) { return e.end; });
+  if (eval.jams_known)
+    WriteColumn<std::int32_t>(file, eval, "still", "step",
+                              "control steps up to the end without turning while two tips pressed; "
+                              "a timeout with more than 60 is a jam (lib/eval/outcome.h)",
+                              [](std::size_t, const E& e) { return e.still; });
   WriteColumn<double>(file, eval, "reward", "1", "sum of scaled rewards",
                       [](std::size_t, const E& e) { return e.total_reward; });
   WriteColumn<double>(file, eval, "angle", "rad", "mean rotation distance to the goal",
@@ -93,6 +98,9 @@ void ReadEpisodes(const H5Reader& file, EvalFile& eval) {
   const auto length = file.ReadValues<std::int32_t>("episode/length", extents);
   const auto successes = file.ReadValues<std::int32_t>("episode/successes", extents);
   const auto end = file.ReadValues<std::uint8_t>("episode/end", extents);
+  eval.jams_known = file.Has("episode/still");
+  const auto still = eval.jams_known ? file.ReadValues<std::int32_t>("episode/still", extents)
+                                     : std::vector<std::int32_t>(run.size(), -1);
   const auto reward = file.ReadValues<double>("episode/reward", extents);
   const auto angle = file.ReadValues<double>("episode/angle", extents);
   const auto distance = file.ReadValues<double>("episode/distance", extents);
@@ -106,6 +114,7 @@ void ReadEpisodes(const H5Reader& file, EvalFile& eval) {
     e.length = length[i];
     e.successes = successes[i];
     e.end = static_cast<EpisodeEnd>(end[i]);
+    e.still = still[i];
     e.total_reward = reward[i];
     e.mean_angle = angle[i];
     e.mean_distance = distance[i];
@@ -144,7 +153,7 @@ void WriteEval(const std::string& path, const EvalFile& eval, const Provenance& 
   std::vector<double> tolerance;
   for (const EvalRun& run : eval.runs) tolerance.push_back(run.tolerance);
   file.WriteString("policy", eval.policy, {"", "", "policy file"});
-  file.WriteScalar("samples", eval.samples, {"1", "", "that its training stage has seen"});
+  file.WriteScalar("samples", eval.samples, {"1", "", "that its training has seen"});
   file.WriteString("engine", eval.engine, {"", "", "simulation engine"});
   file.WriteScalar<std::int32_t>("substeps", eval.substeps,
                                  {"1", "", "physics steps per control step"});

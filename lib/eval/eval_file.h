@@ -26,12 +26,13 @@ struct EvalObject {
 
 struct EvalFile {
   std::string policy;        // file name
-  std::int64_t samples = 0;  // that its training stage has seen
+  std::int64_t samples = 0;  // that its training has seen; evaluate --earlier adds stages
   std::string engine;        // simulation engine
   int substeps = 0;          // physics steps per control step
   std::uint64_t seed = 0;
   double push = 0;                       // N; 0 = no disturbance
   std::string category_input = "label";  // or "predicted" or "soft": EvalOptions::category
+  bool jams_known = true;                // false for files older than EpisodeRecord::still
   std::vector<EvalObject> objects;
   std::vector<EvalRun> runs;
 };

@@ -6,10 +6,16 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "base/random.h"
+#include "eval/outcome.h"
 #include "shape/shape_files.h"
 
 namespace dexremoe {
 namespace {
+
+Eigen::Quaterniond RotationOf(const ReorientBatch& batch, int env) {
+  const double* q = &batch.sim_state().object_rotation[static_cast<std::size_t>(env) * 4];
+  return {q[0], q[1], q[2], q[3]};
+}
 
 // A push every `every` control steps (at the decision that follows), in a direction that belongs to
 // (object, episode, step).
@@ -27,6 +33,15 @@ void PushObjects(ReorientBatch& batch, const std::vector<EpisodeJob>& jobs,
     Eigen::Vector3d direction(rng.Normal(), rng.Normal(), rng.Normal());
     batch.Push(env, push.force * direction.normalized());
   }
+}
+
+// The clocks of all environments, a decision later.
+void AdvanceClocks(const ReorientBatch& batch, std::vector<StillClock>& clocks) {
+  const SimState& state = batch.sim_state();
+  const std::size_t fingers = state.tip_contact.size() / clocks.size();
+  for (std::size_t env = 0; env < clocks.size(); ++env)
+    clocks[env].Advance(RotationOf(batch, static_cast<int>(env)),
+                        {&state.tip_contact[env * fingers], fingers}, batch.action_repeat());
 }
 
 // `rows` rows of `width`, filled up with copies of the first row.
@@ -113,6 +128,7 @@ std::vector<EpisodeRecord> RunJobs(ReorientBatch& batch, const ActFunction& act,
   DEX_CHECK_LE(envs, count);
   batch.set_auto_reset(false);
   std::vector<int> job_of_env(envs, -1), age(envs, 0);
+  std::vector<StillClock> clocks(envs);
   int next = 0, done = 0;
   const auto start = [&](int env) {
     job_of_env[env] = next < count ? next++ : -1;
@@ -120,6 +136,7 @@ std::vector<EpisodeRecord> RunJobs(ReorientBatch& batch, const ActFunction& act,
     if (job_of_env[env] >= 0) {
       const EpisodeJob& job = jobs[job_of_env[env]];
       batch.Reset(env, job.object, job.episode);
+      clocks[env].Start(RotationOf(batch, env));
     }
   };
   for (int env = 0; env < envs; ++env) start(env);
@@ -133,11 +150,13 @@ std::vector<EpisodeRecord> RunJobs(ReorientBatch& batch, const ActFunction& act,
     const StepResult& result = batch.Step(actions);
     if (observer.after) observer.after(result);
     for (int& a : age) a += batch.action_repeat();
+    AdvanceClocks(batch, clocks);
     for (EpisodeRecord& record : batch.TakeRecords()) {
       const int job = job_of_env[record.env];
       DEX_CHECK_GE(job, 0);
       record.object = jobs[job].object;
       record.episode = jobs[job].episode;
+      record.still = clocks[record.env].still();
       records[job] = record;
       ++done;
       start(record.env);

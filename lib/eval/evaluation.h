@@ -87,7 +87,9 @@ std::vector<EvalRun> Evaluate(const EvalSetup& setup, const EvalOptions& options
 
 // Which episodes of a run to record: "best" and "worst" by successes, at most one per object until
 // every object has one; "first" is episode 0 of the first objects. Ties go to the longer (best) or
-// the earlier job.
+// the earlier job. "typical" is one of each object, those of fewest successes first: of the kind of
+// failure (fall or jam) that it ends in most often, the one of median length; without a failure, of
+// all its episodes.
 std::vector<EpisodeJob> ChooseEpisodes(const EvalRun& run, int count, const std::string& choice);
 
 // Runs chosen episodes of a run once more and records them. `gates` is [objects, E] or empty.

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 
@@ -145,6 +146,13 @@ std::string PaletteColor(int index, int transparency) {
 }
 
 std::string PaletteColor(int index) { return PaletteColor(index, 0); }
+
+double NiceStep(double range, int most) {
+  const double power = std::pow(10, std::floor(std::log10(range / most)));
+  for (const double step : {1, 2, 5})
+    if (step * power * most >= range) return step * power;
+  return 10 * power;
+}
 
 std::string GnuplotQuoted(const std::string& text) {
   std::string out = "\"";

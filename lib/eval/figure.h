@@ -27,6 +27,9 @@ std::string PaletteColor(int index);
 // The same colour with transparency 0 (opaque) .. 255, as gnuplot's "#AARRGGBB".
 std::string PaletteColor(int index, int transparency);
 
+// Distance of tics: 1, 2 or 5 times a power of ten, at most `most` of them over `range` > 0.
+double NiceStep(double range, int most);
+
 // Text as a gnuplot string or data column: quoted, quotes and line breaks replaced.
 std::string GnuplotQuoted(const std::string& text);
 

@@ -2,25 +2,13 @@
 #include <numeric>
 
 #include "base/error.h"
-#include "eval/plots.h"
+#include "eval/study_plots.h"
 
 namespace dexremoe {
 namespace {
 
 constexpr std::size_t kMostBars = 40;  // objects; beyond that points with error bars
 constexpr double kGroupWidth = 0.8;    // of the distance between two objects
-
-void CheckSameObjects(const std::vector<EvaluatedMethod>& methods) {
-  const auto& first = methods.front().eval.objects;
-  for (const EvaluatedMethod& method : methods) {
-    const auto& objects = method.eval.objects;
-    bool same = objects.size() == first.size();
-    for (std::size_t i = 0; same && i < first.size(); ++i) same = objects[i].name == first[i].name;
-    if (!same)
-      Fail("bars: {}: expected the same {} objects as {}, found others", method.label, first.size(),
-           methods.front().label);
-  }
-}
 
 // Objects in ascending order of S under the last method; ties by name.
 std::vector<int> SortedObjects(const std::vector<EvaluatedMethod>& methods, double tolerance) {
@@ -91,6 +79,18 @@ std::string PlotLines(const std::vector<EvaluatedMethod>& methods, bool bars) {
 }
 
 }  // namespace
+
+void CheckSameObjects(const std::vector<EvaluatedMethod>& methods) {
+  const auto& first = methods.front().eval.objects;
+  for (const EvaluatedMethod& method : methods) {
+    const auto& objects = method.eval.objects;
+    bool same = objects.size() == first.size();
+    for (std::size_t i = 0; same && i < first.size(); ++i) same = objects[i].name == first[i].name;
+    if (!same)
+      Fail("{}: expected the same {} objects as {}, found others", method.label, first.size(),
+           methods.front().label);
+  }
+}
 
 const EvalRun& RunAt(const EvaluatedMethod& method, double tolerance) {
   const EvalRun* run = FindRun(method.eval, tolerance);

@@ -104,7 +104,7 @@ std::string CurveData(const std::vector<Curve>& curves, const std::string& x,
   return data;
 }
 
-// Distance of tics: 1, 2 or 5 times a power of ten, at most `most` of them over all runs' values.
+// Distance of tics, at most `most` of them over all runs' values; 0 where there is but one value.
 double TicStep(const std::vector<Curve>& curves, const std::string& column, int most) {
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (const Curve& curve : curves)
@@ -114,11 +114,7 @@ double TicStep(const std::vector<Curve>& curves, const std::string& column, int 
       high = std::max(high, value);
     }
   const double range = AxisOf(column).factor * (high - low);
-  if (!(range > 0)) return 0;
-  const double power = std::pow(10, std::floor(std::log10(range / most)));
-  for (const double step : {1, 2, 5})
-    if (step * power * most >= range) return step * power;
-  return 10 * power;
+  return range > 0 ? NiceStep(range, most) : 0;
 }
 
 std::string TicsScript(const char* axis, double step) {

@@ -10,7 +10,7 @@
 namespace dexremoe {
 namespace {
 
-constexpr std::size_t kMostNames = 30;  // objects; beyond that they are numbered
+constexpr std::size_t kMostNames = 30;  // objects; beyond that numbers stand alone
 constexpr double kMap = 12.5;           // cm, side of the map
 constexpr double kMarkerRadius = 0.1;   // cm
 constexpr double kLetterWidth = 0.136;  // cm, of a label
@@ -123,7 +123,8 @@ std::string CaptionOf(const Embedding& map) {
 std::vector<std::string> LabelTexts(const Embedding& map) {
   std::vector<std::string> text;
   for (std::size_t o = 0; o < map.objects.size(); ++o)
-    text.push_back(map.objects.size() <= kMostNames ? map.objects[o].name : fmt::format("{}", o));
+    text.push_back(map.objects.size() <= kMostNames ? fmt::format("{} {}", o, map.objects[o].name)
+                                                    : fmt::format("{}", o));
   return text;
 }
 

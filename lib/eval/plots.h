@@ -28,9 +28,6 @@ struct EvaluatedMethod {
 };
 // The method's run at `tolerance`. Throws Error naming the method when there is none.
 const EvalRun& RunAt(const EvaluatedMethod& method, double tolerance);
-// S_mean with its 95 % interval against the samples that the evaluated policies have seen; those of
-// one label make one line. Throws Error as RunAt.
-Figure GrowthFigure(const std::vector<EvaluatedMethod>& methods, double tolerance);
 // S_i with 95 % intervals, grouped by object; objects in ascending order under the last method
 // (paper, figure 6). Bars up to 40 objects, points beyond. Throws Error when a method lacks the
 // tolerance or the objects differ.
@@ -40,7 +37,7 @@ Figure BarsFigure(const std::vector<EvaluatedMethod>& methods, double tolerance)
 // for each method (paper, figure 7). Throws Error when a method lacks the tolerance or objects.
 Figure AblationFigure(const std::vector<EvaluatedMethod>& methods, double tolerance);
 
-// Rows as dots, objects as ringed markers with their number (or name, up to 30 objects); colours by
+// Rows as dots, objects as ringed markers with their number (and name, up to 30 objects); colours by
 // "cluster", "category" or "expert" (the one with the largest mean weight).
 Figure EmbeddingFigure(const Embedding& embedding, const std::string& color);
 

@@ -1,10 +1,12 @@
 // Replays chosen episodes and keeps every control step.
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "base/check.h"
 #include "base/error.h"
 #include "eval/evaluation.h"
+#include "eval/outcome.h"
 
 namespace dexremoe {
 namespace {
@@ -36,8 +38,6 @@ const EpisodeRecord* FindRecord(const EvalRun& run, const EpisodeJob& job) {
   return nullptr;
 }
 
-const char* EndName(EpisodeEnd end) { return end == EpisodeEnd::kFall ? "fall" : "timeout"; }
-
 // Names the episodes and checks that each went as it did in the evaluation.
 void Describe(const EvalSetup& setup, const EvalRun& run,
               const std::vector<EpisodeRecord>& replayed, std::vector<EpisodeTrace>& traces) {
@@ -54,14 +54,45 @@ void Describe(const EvalSetup& setup, const EvalRun& run,
     traces[i].object = object.name;
     traces[i].category = kCategories[object.category];
     traces[i].episode = again.episode;
-    traces[i].end = EndName(again.end);
+    traces[i].end = OutcomeName(OutcomeOf(again));
     traces[i].successes = again.successes;
   }
+}
+
+// See ChooseEpisodes.
+EpisodeJob TypicalEpisode(const EvalRun& run, int object) {
+  std::array<std::vector<const EpisodeRecord*>, kNumOutcomes> by_outcome;
+  std::vector<const EpisodeRecord*> all;
+  for (const EpisodeRecord& e : run.episodes) {
+    if (e.object != object) continue;
+    by_outcome[static_cast<std::size_t>(OutcomeOf(e))].push_back(&e);
+    all.push_back(&e);
+  }
+  const auto& falls = by_outcome[static_cast<std::size_t>(Outcome::kFall)];
+  const auto& jams = by_outcome[static_cast<std::size_t>(Outcome::kJam)];
+  std::vector<const EpisodeRecord*> kind = falls.size() >= jams.size() ? falls : jams;
+  if (kind.empty()) kind = all;
+  std::stable_sort(kind.begin(), kind.end(),
+                   [](const auto* a, const auto* b) { return a->length < b->length; });
+  return {object, kind[kind.size() / 2]->episode};
+}
+
+std::vector<EpisodeJob> TypicalEpisodes(const EvalRun& run, int count) {
+  std::vector<const ObjectMetrics*> order;
+  for (const ObjectMetrics& m : run.metrics.objects) order.push_back(&m);
+  std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) {
+    return (*a)[ObjectMetric::kSuccesses].value < (*b)[ObjectMetric::kSuccesses].value;
+  });
+  std::vector<EpisodeJob> chosen;
+  for (const ObjectMetrics* m : order)
+    if (static_cast<int>(chosen.size()) < count) chosen.push_back(TypicalEpisode(run, m->object));
+  return chosen;
 }
 
 }  // namespace
 
 std::vector<EpisodeJob> ChooseEpisodes(const EvalRun& run, int count, const std::string& choice) {
+  if (choice == "typical") return TypicalEpisodes(run, count);
   std::vector<const EpisodeRecord*> order;
   for (const EpisodeRecord& e : run.episodes) order.push_back(&e);
   if (choice == "best")

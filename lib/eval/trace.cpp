@@ -101,7 +101,7 @@ void WriteTrace(const std::string& path, const TraceFile& trace, const Provenanc
   file.WriteStrings("category", Gather(trace.episodes, &EpisodeTrace::category),
                     {"", "episode", "category of the object"});
   file.WriteStrings("end", Gather(trace.episodes, &EpisodeTrace::end),
-                    {"", "episode", "how it ended: fall or timeout"});
+                    {"", "episode", "how it ended: fall, jam or time"});
   file.Write("number", Gather(trace.episodes, &EpisodeTrace::episode), {count},
              {"1", "episode", "episode number; addresses the random streams"});
   file.Write("scale", Gather(trace.episodes, &EpisodeTrace::scale), {count},

@@ -18,7 +18,7 @@ struct EpisodeTrace {
   std::string category;
   std::uint64_t episode = 0;  // number that addressed the random streams
   double scale = 1;           // size factor on the object's files
-  std::string end;            // "fall" or "timeout"
+  std::string end;            // "fall", "jam" or "time" (OutcomeName)
   int successes = 0;
   std::vector<double> joint_position;   // [T, J] rad
   std::vector<double> object_position;  // [T, 3] m in W

@@ -46,7 +46,7 @@ struct PolicyRows {
 // How a mixture used its experts on some rows; sums over the rows, to be added up.
 struct RoutingSums {
   double loss = 0;           // the policy's own losses, weighted as in training
-  double entropy = 0;        // nats, of the weights
+  double entropy = 0;        // nats, of the weights; of Switch, of its probabilities
   std::vector<double> load;  // [experts]: rows weighed by the expert's weight
   void Add(const RoutingSums& other) {
     loss += other.loss;

@@ -135,7 +135,8 @@ void RoutedMixture<T>::Balance(const PolicyRows<W>& rows, const ShapeInputs<W>& 
   const Pass pass = Carve(shapes.objects, rows.n, work);
   const double loss = router_->Balance(RowsOfRouter(rows, pass), pass.weights, weight, pass.router);
   sums.loss += static_cast<double>(rows.n) * loss;
-  AddRouting(rows.n, gates(), pass.weights, sums);
+  const W* shares = router_->Shares(rows.n, pass.weights, pass.router);
+  AddRouting(rows.n, gates(), pass.weights, shares, sums);
 }
 
 template <typename T>

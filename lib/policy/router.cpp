@@ -40,13 +40,14 @@ void SortScores(int experts, const W* scores, std::vector<int>& order) {
 }
 
 template <typename W>
-void AddRouting(std::int64_t n, int experts, const W* weights, RoutingSums& sums) {
+void AddRouting(std::int64_t n, int experts, const W* weights, const W* shares, RoutingSums& sums) {
   sums.load.resize(experts, 0.0);
-  for (std::int64_t r = 0; r < n; ++r, weights += experts) {
+  for (std::int64_t r = 0; r < n; ++r, weights += experts, shares += experts) {
     const double total = std::accumulate(weights, weights + experts, 0.0);
+    const double whole = std::accumulate(shares, shares + experts, 0.0);
     for (int i = 0; i < experts; ++i) {
-      const double share = weights[i] / total;
-      sums.load[i] += share;
+      sums.load[i] += weights[i] / total;
+      const double share = shares[i] / whole;
       if (share > 0) sums.entropy -= share * std::log(share);
     }
   }
@@ -58,7 +59,7 @@ void AddRouting(std::int64_t n, int experts, const W* weights, RoutingSums& sums
                                      W*, W*);                                                    \
   template W SquaredVariation(const std::vector<W>&, std::vector<W>&);                           \
   template void SortScores(int, const W*, std::vector<int>&);                                    \
-  template void AddRouting(std::int64_t, int, const W*, RoutingSums&);
+  template void AddRouting(std::int64_t, int, const W*, const W*, RoutingSums&);
 DEX_INSTANTIATE(float)
 DEX_INSTANTIATE(double)
 #undef DEX_INSTANTIATE

@@ -32,6 +32,8 @@ class Router {
   virtual std::int64_t PassSize(std::int64_t n) const = 0;
   // weights [n, E] is set; 0 where an expert does not act.
   virtual void Forward(const W* params, const RouterRows<W>& rows, W* pass, W* weights) const = 0;
+  // After Forward, [n, E]: what the routing's entropy is taken of, a row relative to its sum.
+  virtual const W* Shares(std::int64_t, const W* weights, W*) const { return weights; }
   // The router's own loss over these rows; Backward will add `weight` times its gradient.
   virtual double Balance(const RouterRows<W>& rows, const W* weights, W weight, W* pass) const = 0;
   // Adds to grads; dinput [n, d] is set. dweights [n, E]: only those of acting experts count.
@@ -54,8 +56,13 @@ W SquaredVariation(const std::vector<W>& v, std::vector<W>& gradient);
 template <typename W>
 void SortScores(int experts, const W* scores, std::vector<int>& order);
 
-// Adds entropy and load of weights [n, E], each row taken relative to its sum.
+// Adds the load of weights and the entropy of shares, both [n, E], each row taken relative to its
+// sum; without shares the entropy is that of the weights.
 template <typename W>
-void AddRouting(std::int64_t n, int experts, const W* weights, RoutingSums& sums);
+void AddRouting(std::int64_t n, int experts, const W* weights, const W* shares, RoutingSums& sums);
+template <typename W>
+void AddRouting(std::int64_t n, int experts, const W* weights, RoutingSums& sums) {
+  AddRouting(n, experts, weights, weights, sums);
+}
 
 }  // namespace dexremoe

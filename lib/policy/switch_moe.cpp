@@ -48,6 +48,11 @@ void SwitchRouter<W>::Forward(const W* params, const RouterRows<W>& rows, W* pas
 }
 
 template <typename W>
+const W* SwitchRouter<W>::Shares(std::int64_t n, const W*, W* pass) const {
+  return Split(n, pass).probability;
+}
+
+template <typename W>
 double SwitchRouter<W>::Balance(const RouterRows<W>& rows, const W* weights, W weight,
                                 W* pass) const {
   const Pass p = Split(rows.n, pass);

@@ -2,6 +2,7 @@
 //   p(x) = softmax(W_r (x u)), u uniform in 1 -+ kJitter per component in training
 //   y = p_i(x) E_i(x), i = argmax p(x)
 //   loss = kBalanceWeight E sum_i f_i P_i, f_i the share of rows that go to i, P_i the mean of p_i
+// The routing's entropy (curves: routing_entropy) is that of p(x): the choice has none.
 // No expert has a capacity here: every row is served.
 #pragma once
 
@@ -23,6 +24,7 @@ class SwitchRouter final : public Router<W> {
   void DrawNoise(Rng& rng, float* noise) const override;
   std::int64_t PassSize(std::int64_t n) const override { return n * (inputs_ + 2 * experts_); }
   void Forward(const W* params, const RouterRows<W>& rows, W* pass, W* weights) const override;
+  const W* Shares(std::int64_t n, const W* weights, W* pass) const override;
   double Balance(const RouterRows<W>& rows, const W* weights, W weight, W* pass) const override;
   void Backward(const W* params, const RouterRows<W>& rows, const W* weights, const W* dweights,
                 W* pass, W* dinput, W* grads) const override;

@@ -105,7 +105,7 @@ Image EpisodeView::DrawScene(int step, int width, int height, GoalPlace place, b
     goal.X_WM.p = PoseAt(episode_.object_position, episode_.object_rotation, 0).p;
   goal.X_WM.p += GoalOffset(place, camera);
   scene.items.push_back(object);
-  scene.items.push_back(goal);
+  if (place != GoalPlace::kNone) scene.items.push_back(goal);
   Image image = renderer_.Draw(scene, camera, width, height);
   if (label && place != GoalPlace::kOver) {
     const Sphere bounds = renderer_.Bounds(goal);
@@ -152,6 +152,10 @@ void EpisodeView::DrawStripCaption(Canvas& canvas, int step, double x, double wi
               {0.85 * size, close ? ink::kGood : ink::kFaint, Align::kCenter});
   DrawStackedWeights(canvas, x + 0.08 * width, y + 3.2 * size, 0.84 * width, 0.6 * size,
                      Weights(step));
+}
+
+Image EpisodeView::Plain(int step, int width, int height) {
+  return DrawScene(step, width, height, GoalPlace::kNone, false);
 }
 
 Image EpisodeView::Strip(const std::vector<int>& steps, int width) {

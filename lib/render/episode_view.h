@@ -27,6 +27,8 @@ class EpisodeView {
   int length() const { return episode_.length(); }
   // One control step with the card of figures.
   Image Picture(int step, int width, int height, GoalPlace place);
+  // One control step: hand and object alone.
+  Image Plain(int step, int width, int height);
   // The steps side by side, each with its time, angle and weights below. `width` of the whole.
   Image Strip(const std::vector<int>& steps, int width);
   // Steps first .. last at `frames_per_second` of episode time.

@@ -134,6 +134,9 @@ struct EpisodeRecord {
   double mean_angle = 0;     // rad, mean over steps of the distance to the goal
   double mean_distance = 0;  // m, mean |dp|
   int bound = -1;  // of the randomisation's range that it stood at (see BoundMoves), or none
+  // Control steps up to its end that the object did not turn while fingers pressed it; only
+  // evaluations look (eval/outcome.h), -1: nobody did.
+  int still = -1;
 };
 
 class ReorientBatch {

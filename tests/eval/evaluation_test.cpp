@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "../sim/scenes.h"
+#include "eval/outcome.h"
 #include "rl/checkpoint.h"
 #include "rl/start.h"
 
@@ -69,6 +70,7 @@ void ExpectEqual(const std::vector<EvalRun>& a, const std::vector<EvalRun>& b) {
       EXPECT_EQ(x.length, y.length) << i;
       EXPECT_EQ(x.successes, y.successes) << i;
       EXPECT_EQ(x.end, y.end) << i;
+      EXPECT_EQ(x.still, y.still) << i;
       EXPECT_EQ(x.total_reward, y.total_reward) << i;
       EXPECT_EQ(x.mean_angle, y.mean_angle) << i;
       EXPECT_EQ(x.mean_distance, y.mean_distance) << i;
@@ -161,7 +163,7 @@ TEST(Evaluation, ATraceIsTheEpisodeThatWasEvaluated) {
     EXPECT_EQ(trace.object, setup.objects[record.object].name);
     EXPECT_EQ(trace.length(), record.length);
     EXPECT_EQ(std::count(trace.success.begin(), trace.success.end(), 1), record.successes);
-    EXPECT_EQ(trace.end, record.end == EpisodeEnd::kFall ? "fall" : "timeout");
+    EXPECT_EQ(trace.end, OutcomeName(OutcomeOf(record)));
     EXPECT_EQ(trace.joint_position.size(), trace.angle.size() * 11);
     EXPECT_EQ(trace.object_rotation.size(), trace.angle.size() * 4);
     EXPECT_EQ(trace.action.size(), trace.angle.size() * 11);

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "eval/label_places.h"
-#include "eval/plots.h"
+#include "eval/study_plots.h"
 #include "io/atomic_file.h"
 #include "io/png.h"
 #include "sample_eval.h"
@@ -164,7 +164,7 @@ TEST_F(Figures, GrowthJoinsTheEvaluationsOfALabelInOrderOfTheirSamples) {
     return eval;
   };
   const Figure figure =
-      GrowthFigure({{"a", after(20, 30)}, {"b", after(5, 20)}, {"a", after(10, 10)}}, 0.4);
+      GrowthFigure({{"a", after(20, 30)}, {"b", after(5, 20)}, {"a", after(10, 10)}}, 0.4, {});
   std::vector<double> samples;
   std::istringstream lines(figure.data);
   for (std::string line; std::getline(lines, line);)
@@ -172,7 +172,7 @@ TEST_F(Figures, GrowthJoinsTheEvaluationsOfALabelInOrderOfTheirSamples) {
   EXPECT_EQ(samples, (std::vector<double>{10, 20, 5}));
   WriteFigure(Stem("growth"), figure);
   EXPECT_GT(Ink(Stem("growth.png")), 0.01);
-  EXPECT_THROW(GrowthFigure({{"a", after(1, 1)}}, 0.3), Error);
+  EXPECT_THROW(GrowthFigure({{"a", after(1, 1)}}, 0.3, {}), Error);
 }
 
 TEST_F(Figures, TheMapIsDrawnInEveryColouring) {

@@ -13,6 +13,7 @@ namespace dexremoe {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(EvalFile, ComesBackWhole) {
   const std::string path = Path("eval.h5");
@@ -35,6 +36,7 @@ TEST(EvalFile, ComesBackWhole) {
       EXPECT_EQ(a.length, b.length);
       EXPECT_EQ(a.successes, b.successes);
       EXPECT_EQ(a.end, b.end);
+      EXPECT_EQ(a.still, b.still);
       EXPECT_EQ(a.total_reward, b.total_reward);
       EXPECT_EQ(a.mean_angle, b.mean_angle);
       EXPECT_EQ(a.mean_distance, b.mean_distance);
@@ -52,6 +54,18 @@ TEST(EvalFile, ComesBackWhole) {
   }
 }
 
+TEST(EvalFile, OfBeforeJamsWereKnownIsReadAndSaysSo) {
+  const std::string path = Path("old_eval.h5");
+  EvalFile eval = SampleEval(5);
+  eval.jams_known = false;  // then the file has no column for them
+  WriteEval(path, eval, {"test", "", 1, {}});
+  const EvalFile back = ReadEval(path);
+  EXPECT_FALSE(back.jams_known);
+  for (const EpisodeRecord& e : back.runs[0].episodes) EXPECT_EQ(e.still, -1);
+  EXPECT_THAT(ReportOf(back), HasSubstr("jams                    ?"));
+  EXPECT_THAT(ReportOf(SampleEval(5)), Not(HasSubstr("?")));
+}
+
 TEST(EvalFile, SplitsAndTolerancesAreFound) {
   const EvalFile eval = SampleEval(5);
   ASSERT_NE(FindRun(eval, 0.1), nullptr);
@@ -66,7 +80,7 @@ TEST(Report, ShowsEveryObjectToleranceAndMetric) {
   const std::string text = ReportOf(eval);
   for (const EvalObject& object : eval.objects) EXPECT_THAT(text, HasSubstr(object.name));
   for (const char* word : {"tolerance 0.4 rad", "tolerance 0.1 rad", "S_min", "S_5-", "S_mean",
-                           "falls", "engine ode with 2 substeps", "seed 1"})
+                           "falls", "jams", "engine ode with 2 substeps", "seed 1"})
     EXPECT_THAT(text, HasSubstr(word));
 }
 

@@ -50,6 +50,7 @@ inline EvalFile SampleEval(double skill, std::uint64_t seed = 1) {
         r.length = 100 + static_cast<int>(rng.Index(501));
         r.end = r.length == 600 ? EpisodeEnd::kTimeout : EpisodeEnd::kFall;
         r.successes = static_cast<int>(skill * tolerance * (o + 1) * rng.Uniform());
+        r.still = static_cast<int>(rng.Index(200));
         r.total_reward = rng.Normal();
         r.mean_angle = rng.Uniform();
         r.mean_distance = 0.01 * rng.Uniform();

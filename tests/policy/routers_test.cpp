@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "gradient_of_policy.h"
@@ -88,6 +89,21 @@ TEST(Routers, FreshNoisyRouterSpreadsTheLoad) {
   RoutingSums sums;
   policy->Balance(problem.rows(), problem.shapes(), work, 1, sums);
   for (const double load : sums.load) EXPECT_NEAR(load / 2000, 0.25, 0.02);
+}
+
+// All parameters zero: every expert is as likely, and the first of them takes every row.
+TEST(Routers, SwitchEntropyIsThatOfItsProbabilitiesNotOfItsChoice) {
+  const PolicyStructure s = SmallRouted("switch_moe");
+  const auto policy = MakePolicy<float>(s);
+  const std::vector<float> params(policy->layout().size(), 0.0f);
+  const Problem<float> problem(s, 50, 4);
+  Workspace<float> work;
+  std::vector<float> mean(problem.dmean.size()), value(problem.n);
+  policy->Forward(params.data(), problem.shapes(), problem.rows(), work, mean.data(), value.data());
+  RoutingSums sums;
+  policy->Balance(problem.rows(), problem.shapes(), work, 1, sums);
+  EXPECT_NEAR(sums.entropy / 50, std::log(4.0), 1e-6);
+  EXPECT_EQ(sums.load[0], 50);
 }
 
 }  // namespace
