@@ -122,7 +122,7 @@ void Run(const EvaluateOptions& o, const Options& options) {
         o.task.goal_angle, o.task.velocity_tolerance);
   EvalFile file = DescribeEval(o, setup);
   if (runner) file.samples = runner->samples();
-  for (const std::string& stage : o.earlier) file.samples += ReadCheckpoint(stage).samples;
+  for (const std::string& stage : o.earlier) file.samples += ReadPolicy(stage).samples;
   file.runs = Evaluate(setup, o.eval, act, pool);
   WriteEval(o.out, file, provenance);
   std::fputs(ReportOf(file).c_str(), stdout);
