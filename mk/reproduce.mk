@@ -6,7 +6,7 @@ REPRODUCED := results/reproduced
 # What is shipped of a run: the policies of all tables, the shape network, and the learning curves,
 # which nothing but training can make.
 SHIPPED = $(wildcard $(patsubst %,$(OUT)/%.h5,shape_net $(METHODS) $(VARIANTS)))
-SHIPPED_CURVES = $(wildcard $(CURVES) $(METHOD_CURVES) $(ADR_CURVE))
+SHIPPED_CURVES = $(sort $(wildcard $(CURVES) $(METHOD_CURVES) $(ADR_CURVE)))
 
 .PHONY: pretrained
 pretrained: deps  ## strip the policies of the run OUT to weights, for make reproduce: results/pretrained
