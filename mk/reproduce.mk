@@ -38,5 +38,6 @@ reproduce: shipped deps  ## evaluate the shipped weights; all tables, figures an
 	+@$(MAKE) $(JOBS) --no-print-directory build
 	@mkdir -p $(REPRODUCED) && cp -ru $(PRETRAINED)/*.h5 $(PRETRAINED)/curves $(REPRODUCED)/
 	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 EXISTING=1 OUT=$(REPRODUCED) $(RECORDED) reproduced
-reproduced: $(TABLES) $(FIGURES)
-	@printf '\nDone. Look at:\n'; printf '  %s\n' $^
+reproduced: $(PRODUCTS)
+	@$(call name_left_out,$(RUN_TABLES) $(RUN_FIGURES) $(ABLATION_TABLES) $(ABLATION_FIGURES))
+	@printf '\nDone. Look at:\n'; printf '  %s\n' $(PRODUCTS)
