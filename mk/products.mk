@@ -1,34 +1,33 @@
 # What a run comes to: tables, figures, films.
 
-# $(2) unless, with EXISTING=1, none of $(1) is there to make it of.
-if_any = $(if $(strip $(1)),$(2))
+RUN_TABLES  := $(addprefix $(OUT)/tables/,table1.md categories.md methods.md)
+RUN_FIGURES := $(addprefix $(OUT)/figures/,curves.png objects.png parts.png per_object.png tsne.png \
+  baselines.png adr.png hand.png hand_parts.png strip.png episode.mp4)
 
-TABLES := \
-  $(call if_any,$(call evaluated,$(EVAL_FILES)),$(OUT)/tables/table1.md) \
-  $(call if_any,$(call evaluated,$(CATEGORY_FILES)),$(OUT)/tables/categories.md) \
-  $(call if_any,$(call trained_in,$(METHOD_FILES)),$(OUT)/tables/methods.md)
-OBJECT_FIGURES := $(addprefix $(OUT)/figures/,objects.png parts.png hand.png hand_parts.png)
-GATE_FIGURES := $(addprefix $(OUT)/figures/,tsne.png strip.png episode.mp4)
-FIGURES := \
-  $(call if_any,$(call trained_in,$(OUT)/gate.h5,$(CURVES)),$(OUT)/figures/curves.png) \
-  $(call if_any,$(call trained_in,$(METHOD_FILES),$(METHOD_CURVES)),$(OUT)/figures/baselines.png) \
-  $(call if_any,$(call trained_in,$(OUT)/baseline_adr.h5,$(ADR_CURVE)),$(OUT)/figures/adr.png) \
-  $(call if_any,$(call evaluated,$(OURS_FILES)),$(OUT)/figures/per_object.png) \
-  $(call if_any,$(call trained_in,$(OUT)/gate.h5),$(GATE_FIGURES)) $(OBJECT_FIGURES)
+# With EXISTING=1 a product is left out when none of these is there to make it of.
+made_of_table1.md      := $(call evaluated,$(EVAL_FILES))
+made_of_categories.md  := $(call evaluated,$(CATEGORY_FILES))
+made_of_methods.md     := $(call trained_in,$(METHOD_FILES))
+made_of_curves.png     := $(call trained_in,$(OUT)/gate.h5,$(CURVES))
+made_of_baselines.png  := $(call trained_in,$(METHOD_FILES),$(METHOD_CURVES))
+made_of_adr.png        := $(call trained_in,$(OUT)/baseline_adr.h5,$(ADR_CURVE))
+made_of_per_object.png := $(call evaluated,$(OURS_FILES))
+$(foreach p,tsne.png strip.png episode.mp4,$(eval made_of_$(p) := $(call trained_in,$(OUT)/gate.h5)))
+$(foreach p,objects.png parts.png hand.png hand_parts.png,$(eval made_of_$(p) := $(OBJECTS)))
+$(foreach p,$(ABLATION_TABLES) $(ABLATION_FIGURES),$(eval made_of_$(notdir $(p)) := $(call evaluated,$(VARIANT_FILES))))
+can_be_made = $(foreach p,$(1),$(if $(strip $(made_of_$(notdir $(p)))),$(p)))
+
+TABLES  := $(call can_be_made,$(RUN_TABLES) $(if $(EXISTING),$(ABLATION_TABLES)))
+FIGURES := $(call can_be_made,$(RUN_FIGURES) $(if $(EXISTING),$(ABLATION_FIGURES)))
 PRODUCTS := $(TABLES) $(FIGURES)
 
 .PHONY: experiment
 experiment: $(PRODUCTS)
 
-# The ablations stand beside them once a variant is there.
-ifdef EXISTING
-TABLES  += $(call if_any,$(call evaluated,$(VARIANT_FILES)),$(ABLATION_TABLES))
-FIGURES += $(call if_any,$(call evaluated,$(VARIANT_FILES)),$(ABLATION_FIGURES))
-endif
-
-# Everything that can be made of what is there; what cannot is named.
 existing = +@$(MAKE) $(JOBS) --no-print-directory build && \
   $(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 EXISTING=1 $(1)
+# $(1): all that might be made
+name_left_out = $(foreach p,$(filter-out $(PRODUCTS),$(1)),echo 'Left out, for nothing is there to make it of: $(p)';)
 
 .PHONY: tables figures existing-tables existing-figures
 tables: deps  ## tables of whatever is trained or evaluated; what is not is marked as missing
@@ -36,4 +35,6 @@ tables: deps  ## tables of whatever is trained or evaluated; what is not is mark
 figures: deps  ## the same for figures
 	$(call existing,existing-figures)
 existing-tables: $(TABLES)
+	@$(call name_left_out,$(RUN_TABLES) $(ABLATION_TABLES))
 existing-figures: $(FIGURES)
+	@$(call name_left_out,$(RUN_FIGURES) $(ABLATION_FIGURES))

@@ -6,7 +6,7 @@ REPRODUCED := results/reproduced
 # What is shipped of a run: the policies of all tables, the shape network, and the learning curves,
 # which nothing but training can make.
 SHIPPED = $(wildcard $(patsubst %,$(OUT)/%.h5,shape_net $(METHODS) $(VARIANTS)))
-SHIPPED_CURVES = $(wildcard $(CURVES) $(METHOD_CURVES) $(ADR_CURVE))
+SHIPPED_CURVES = $(sort $(wildcard $(CURVES) $(METHOD_CURVES) $(ADR_CURVE)))
 
 .PHONY: pretrained
 pretrained: deps  ## strip the policies of the run OUT to weights, for make reproduce: results/pretrained
@@ -38,5 +38,6 @@ reproduce: shipped deps  ## evaluate the shipped weights; all tables, figures an
 	+@$(MAKE) $(JOBS) --no-print-directory build
 	@mkdir -p $(REPRODUCED) && cp -ru $(PRETRAINED)/*.h5 $(PRETRAINED)/curves $(REPRODUCED)/
 	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 EXISTING=1 OUT=$(REPRODUCED) $(RECORDED) reproduced
-reproduced: $(TABLES) $(FIGURES)
-	@printf '\nDone. Look at:\n'; printf '  %s\n' $^
+reproduced: $(PRODUCTS)
+	@$(call name_left_out,$(RUN_TABLES) $(RUN_FIGURES) $(ABLATION_TABLES) $(ABLATION_FIGURES))
+	@printf '\nDone. Look at:\n'; printf '  %s\n' $(PRODUCTS)

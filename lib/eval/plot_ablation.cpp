@@ -50,7 +50,8 @@ Figure AblationFigure(const std::vector<EvaluatedMethod>& methods, double tolera
   for (std::size_t m = 0; m < methods.size(); ++m)
     figure.script += fmt::format(
         "{0}data index {1} using 1:3 with boxes lc rgb \"{2}\" fs solid 0.85 noborder title {3}, "
-        "\\\n  data index {1} using 1:3:4:5 with yerrorbars pt 0 ps 0 lw 0.9 lc rgb \"#303030\" "
+        "\\\n  data index {1} using 1:4:(0):($5-$4) with vectors heads size screen 0.005,90 lw 0.9 "
+        "lc rgb \"#303030\" "
         "notitle",
         m > 0 ? ", \\\n  " : "", m, PaletteColor(static_cast<int>(m)),
         GnuplotQuoted(methods[m].label));

@@ -34,7 +34,8 @@ const EvalRun& RunAt(const EvaluatedMethod& method, double tolerance);
 Figure BarsFigure(const std::vector<EvaluatedMethod>& methods, double tolerance);
 
 // The paper's five metrics over the training objects with 95 % intervals, grouped by metric, a bar
-// for each method (paper, figure 7). Throws Error when a method lacks the tolerance or objects.
+// for each method (paper, figure "Ablation Experiments"). Throws Error when a method lacks the
+// tolerance or objects.
 Figure AblationFigure(const std::vector<EvaluatedMethod>& methods, double tolerance);
 
 // Rows as dots, objects as ringed markers with their number (and name, up to 30 objects); colours by

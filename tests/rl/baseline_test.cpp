@@ -156,5 +156,15 @@ TEST(Baseline, CardSaysWhatTheMethodIs) {
     EXPECT_NE(table.find(words), std::string::npos) << words << "\n" << table;
 }
 
+TEST(Baseline, TheTableOfMethodsSaysWhichAreMissing) {
+  const TemporaryFolder folder("methods");
+  WriteCheckpoint(folder / "base.h5", ToyBase(), ToyProvenance());
+  const std::vector<std::string> files = {folder / "gone.h5", folder / "base.h5"};
+  const std::string table = MethodTable(files, true);
+  EXPECT_NE(table.find("| gone | missing |"), std::string::npos) << table;
+  EXPECT_NE(table.find("| base | "), std::string::npos) << table;
+  EXPECT_THROW(MethodTable(files), Error);
+}
+
 }  // namespace
 }  // namespace dexremoe

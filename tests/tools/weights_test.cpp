@@ -1,0 +1,48 @@
+// Weights of a real training, and shares of its samples, by the tools themselves.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rl/policy_file.h"
+#include "training_fixture.h"
+
+namespace dexremoe {
+namespace {
+
+class WeightsTool : public TrainingTest {};
+
+TEST_F(WeightsTool, WeightsAreEvaluatedLikeTheirCheckpoint) {
+  ASSERT_EQ(Run(TrainBase("base", "--samples=2560"), "base"), 0) << Slurp(Path("base.txt"));
+  ASSERT_EQ(Run(Bin() + "export_weights --policy=" + Path("base.h5") +
+                    " --out=" + Path("weights/base.h5"),
+                "export"),
+            0)
+      << Slurp(Path("export.txt"));
+  EXPECT_EQ(Slurp(Path("export.txt")), "base,2560,1\n");
+  const std::string evaluate =
+      Bin() + "evaluate --config=" + Path("tiny.toml") +
+      " --eval.episodes=6 --eval.tolerances=0.4 --objects=" + Path("objects.csv");
+  for (const char* folder : {"", "weights/"}) {
+    const std::string file = Path(std::string(folder) + "base.h5");
+    ASSERT_EQ(Run(evaluate + " --policy=" + file + " --out=" + file + ".eval", "evaluate"), 0)
+        << Slurp(Path("evaluate.txt"));
+  }
+  EXPECT_EQ(Run(Bin() + "h5_diff " + "--a=" + Path("base.h5.eval") +
+                    " --b=" + Path("weights/base.h5.eval"),
+                "diff"),
+            0)
+      << Slurp(Path("diff.txt"));
+}
+
+TEST_F(WeightsTool, AShareOfTheSamplesIsTrained) {
+  ASSERT_EQ(Run(TrainBase("parent", "--samples=256"), "parent"), 0) << Slurp(Path("parent.txt"));
+  ASSERT_EQ(Run(Bin() + "train_expert --config=" + Path("tiny.toml") +
+                    " --base=" + Path("parent.h5") + " --objects=" + Path("objects.csv") +
+                    " --out=" + Path("expert.h5") + " --samples=2560 --share=0.5",
+                "expert"),
+            0)
+      << Slurp(Path("expert.txt"));
+  EXPECT_EQ(ReadPolicy(Path("expert.h5")).samples, 1280);
+}
+
+}  // namespace
+}  // namespace dexremoe
