@@ -6,7 +6,7 @@
 
 STUDY_EPISODES ?= 10
 STUDY_STARTS   ?= 40
-PUSHES         ?= 0 0.5 1 2 4
+PUSHES         ?= 0 2 5 10 20
 SIZES          ?= 0.6 0.7 0.8 0.9 1.0
 
 .PHONY: studies studied

@@ -64,10 +64,10 @@ std::string LineScript(const StudyLine& line, std::size_t k, bool band) {
       GnuplotQuoted(line.label));
 }
 
-// From zero, unless the values stand far from it.
+// From zero, unless the values stand closer to each other than to it.
 std::string RangeOf(const std::vector<double>& x) {
   const auto [least, most] = std::minmax_element(x.begin(), x.end());
-  if (*least <= 0.3 * *most) return "[0:*]";
+  if (*least <= 0.5 * *most) return "[0:*]";
   const double margin = std::max(0.04 * (*most - *least), 1e-3 * *most);
   return fmt::format("[{:.6g}:{:.6g}]", *least - margin, *most + margin);
 }
@@ -79,9 +79,9 @@ Figure StudyFigure(const std::vector<EvaluatedMethod>& methods, const std::vecto
                    const std::vector<std::string>& missing) {
   DEX_CHECK_EQ(methods.size(), x.size());
   const std::vector<StudyLine> lines = LinesOf(methods, x, tolerance);
-  const bool few = lines.size() <= kMostBands;
+  const bool bands = lines.size() <= kMostBands, inside = bands && missing.empty();
   Figure figure;
-  figure.width = few ? 14 : 17;
+  figure.width = inside ? 14 : 17;
   figure.height = 8.5;
   figure.data = StudyData(lines, x_label);
   figure.script = fmt::format(
@@ -90,9 +90,9 @@ Figure StudyFigure(const std::vector<EvaluatedMethod>& methods, const std::vecto
       "set xtics nomirror out scale 0.5\nset ytics nomirror out scale 0.5\n"
       "set xrange {}\nset yrange [0:*]\nset xlabel {}\n"
       "set ylabel \"successes per episode at {} rad\"\nplot ",
-      few ? "top left" : "outside right top", RangeOf(x), GnuplotQuoted(x_label), tolerance);
+      inside ? "top left" : "outside right top", RangeOf(x), GnuplotQuoted(x_label), tolerance);
   for (std::size_t k = 0; k < lines.size(); ++k)
-    figure.script += (k > 0 ? ", \\\n  " : "") + LineScript(lines[k], k, few);
+    figure.script += (k > 0 ? ", \\\n  " : "") + LineScript(lines[k], k, bands);
   for (const std::string& label : missing)
     figure.script += fmt::format(", \\\n  NaN with lines lc rgb \"#FFFFFF\" title {}",
                                  GnuplotQuoted(label + " (missing)"));
