@@ -33,6 +33,14 @@ STUDY   := $(OUT)/eval/studies
 study = mkdir -p $(@D) && $(BIN)/evaluate $(COMMON) $(RUNS) $(check) $(check_lanes) \
   --eval.episodes=$(STUDY_EPISODES) --policy=$(1) --objects=$(2) $(3) --out=$@ >$(@:.h5=.txt)
 
+# Rewritten only when they change, so that what was made with other ones is remade. $(1): text
+remember = mkdir -p $(@D) && printf '%s\n' '$(1)' >$@.tmp && if cmp -s $@.tmp $@; then rm $@.tmp; else mv $@.tmp $@; fi
+$(STUDY)/episodes.txt: FORCE
+	@$(call remember,$(STUDY_EPISODES))
+$(STUDY)/methods.txt: FORCE
+	@$(call remember,$(SHOWN); $(PUSHES); $(SIZES))
+in = $(call commas,$(filter %.h5,$^))
+
 # --- Objects ------------------------------------------------------------------------------------
 
 # The five best and worst of the base policy. The same episodes as in the table, and a recorded one of each.
@@ -48,19 +56,19 @@ $(OUT)/figures/best_worst.png: $(STUDY)/base.h5 | $(BIN)/rank_objects
 # Success per object, all methods (the untrained one would only take room).
 SHOWN := $(filter-out untrained,$(STUDIED))
 PER_OBJECT := sorted hardest others
-$(PER_OBJECT:%=$(OUT)/figures/%.png): $(OUT)/figures/%.png: $(SHOWN:%=$(OUT)/eval/%.h5) | $(BIN)/plot
-	$(BIN)/plot --kind=$* --in=$(call commas,$^) --labels="$(call labels,$(SHOWN))" $(missing) --seed=$(SEED) --out=$(basename $@)
+$(PER_OBJECT:%=$(OUT)/figures/%.png): $(OUT)/figures/%.png: $(STUDY)/methods.txt $(SHOWN:%=$(OUT)/eval/%.h5) | $(BIN)/plot
+	$(BIN)/plot --kind=$* --in=$(in) --labels="$(call labels,$(SHOWN))" $(missing) --seed=$(SEED) --out=$(basename $@)
 
 # --- Pushes -------------------------------------------------------------------------------------
 
 PUSHED := $(foreach m,$(SHOWN),$(PUSHES:%=$(STUDY)/push/$(m)-%.h5))
 define push_rule
-$(STUDY)/push/$(1)-$(2).h5: $(OUT)/$(1).h5 | $(BIN)/evaluate
+$(STUDY)/push/$(1)-$(2).h5: $(OUT)/$(1).h5 $(STUDY)/episodes.txt | $(BIN)/evaluate
 	$$(call study,$$<,$(OUT)/objects.csv,--eval.push=$(2))
 endef
 $(foreach m,$(SHOWN),$(foreach f,$(PUSHES),$(eval $(call push_rule,$(m),$(f)))))
-$(OUT)/figures/push.png: $(PUSHED) | $(BIN)/plot
-	$(BIN)/plot --kind=study --x="push on the object for a control step, once a second (N)" --in=$(call commas,$^) \
+$(OUT)/figures/push.png: $(STUDY)/methods.txt $(PUSHED) | $(BIN)/plot
+	$(BIN)/plot --kind=study --x="push on the object for a control step, once a second (N)" --in=$(in) \
 	  --values=$(call commas,$(call repeat,$(SHOWN),$(PUSHES))) \
 	  --labels="$(call labels,$(foreach m,$(SHOWN),$(call repeat,$(PUSHES),$(m))))" $(missing) --out=$(basename $@)
 
@@ -90,12 +98,12 @@ $(SIZES:%=$(SIZED)/%.csv): $(SIZED)/%.csv: $(OUT)/objects.csv $(SIZED_OBJECTS:%=
 
 SIZE_FILES := $(foreach m,$(SHOWN),$(SIZES:%=$(STUDY)/size/$(m)-%.h5))
 define size_study_rule
-$(STUDY)/size/$(1)-$(2).h5: $(OUT)/$(1).h5 $(SIZED)/$(2).csv | $(BIN)/evaluate
+$(STUDY)/size/$(1)-$(2).h5: $(OUT)/$(1).h5 $(SIZED)/$(2).csv $(STUDY)/episodes.txt | $(BIN)/evaluate
 	$$(call study,$$<,$(SIZED)/$(2).csv)
 endef
 $(foreach m,$(SHOWN),$(foreach s,$(SIZES),$(eval $(call size_study_rule,$(m),$(s)))))
-$(OUT)/figures/size.png: $(SIZE_FILES) | $(BIN)/plot
-	$(BIN)/plot --kind=study --x="size of the objects (1: 0.1 m long)" --in=$(call commas,$^) \
+$(OUT)/figures/size.png: $(STUDY)/methods.txt $(SIZE_FILES) | $(BIN)/plot
+	$(BIN)/plot --kind=study --x="size of the objects (1: 0.1 m long)" --in=$(in) \
 	  --values=$(call commas,$(call repeat,$(SHOWN),$(SIZES))) \
 	  --labels="$(call labels,$(foreach m,$(SHOWN),$(call repeat,$(SIZES),$(m))))" $(missing) --out=$(basename $@)
 $(OUT)/tables/sizes.md: $(SIZED_OBJECTS:%=%/grasps.log)
@@ -115,9 +123,9 @@ BEFORE_gate := $(OUT)/base.h5 $(EXPERT_FILES)
 snapshots = $(basename $(notdir $(sort $(wildcard $(OUT)/snapshots/$(1)/*.h5))))
 states    = $(addprefix $(STUDY)/growth/$(1)-,$(addsuffix .h5,$(call snapshots,$(1)) last))
 define growth_rules
-$(STUDY)/growth/$(1)-last.h5: $(OUT)/$(1).h5 | $(BIN)/evaluate
+$(STUDY)/growth/$(1)-last.h5: $(OUT)/$(1).h5 $(STUDY)/episodes.txt | $(BIN)/evaluate
 	$$(call study,$$<,$(OUT)/objects.csv,$(if $(BEFORE_$(1)),--earlier=$(call commas,$(BEFORE_$(1)))))
-$(addprefix $(STUDY)/growth/$(1)-,$(addsuffix .h5,$(call snapshots,$(1)))): $(STUDY)/growth/$(1)-%.h5: $(OUT)/snapshots/$(1)/%.h5 | $(BIN)/evaluate
+$(addprefix $(STUDY)/growth/$(1)-,$(addsuffix .h5,$(call snapshots,$(1)))): $(STUDY)/growth/$(1)-%.h5: $(OUT)/snapshots/$(1)/%.h5 $(STUDY)/episodes.txt | $(BIN)/evaluate
 	$$(call study,$$<,$(OUT)/objects.csv,$(if $(BEFORE_$(1)),--earlier=$(call commas,$(BEFORE_$(1)))))
 endef
 $(foreach m,$(TRAINED),$(eval $(call growth_rules,$(m))))
@@ -125,7 +133,7 @@ GREW := $(foreach m,$(filter-out gate,$(TRAINED)),$(call states,$(m))) \
   $(if $(filter gate,$(TRAINED)),$(call states,base) $(call states,gate))
 GREW_AS := $(foreach m,$(filter-out gate,$(TRAINED)),$(call repeat,$(call states,$(m)),$(m))) \
   $(if $(filter gate,$(TRAINED)),$(call repeat,$(call states,base) $(call states,gate),gate))
-$(OUT)/figures/samples.png: $(GREW) | $(BIN)/plot
+$(OUT)/figures/samples.png: $(STUDY)/methods.txt $(GREW) | $(BIN)/plot
 	$(BIN)/plot --kind=growth --in=$(call commas,$(GREW)) --labels="$(call labels,$(GREW_AS))" $(missing) --out=$(basename $@)
 
 # --- All of them --------------------------------------------------------------------------------
