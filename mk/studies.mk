@@ -68,7 +68,7 @@ $(STUDY)/push/$(1)-$(2).h5: $(OUT)/$(1).h5 $(STUDY)/episodes.txt | $(BIN)/evalua
 endef
 $(foreach m,$(SHOWN),$(foreach f,$(PUSHES),$(eval $(call push_rule,$(m),$(f)))))
 $(OUT)/figures/push.png: $(STUDY)/methods.txt $(PUSHED) | $(BIN)/plot
-	$(BIN)/plot --kind=study --x="push on the object for a control step, once a second (N)" --in=$(in) \
+	$(BIN)/plot --kind=study --x="push (N)" --in=$(in) \
 	  --values=$(call commas,$(call repeat,$(SHOWN),$(PUSHES))) \
 	  --labels="$(call labels,$(foreach m,$(SHOWN),$(call repeat,$(PUSHES),$(m))))" $(missing) --out=$(basename $@)
 
@@ -103,7 +103,7 @@ $(STUDY)/size/$(1)-$(2).h5: $(OUT)/$(1).h5 $(SIZED)/$(2).csv $(STUDY)/episodes.t
 endef
 $(foreach m,$(SHOWN),$(foreach s,$(SIZES),$(eval $(call size_study_rule,$(m),$(s)))))
 $(OUT)/figures/size.png: $(STUDY)/methods.txt $(SIZE_FILES) | $(BIN)/plot
-	$(BIN)/plot --kind=study --x="size of the objects (1: 0.1 m long)" --in=$(in) \
+	$(BIN)/plot --kind=study --x="size (1: 0.1 m long)" --in=$(in) \
 	  --values=$(call commas,$(call repeat,$(SHOWN),$(SIZES))) \
 	  --labels="$(call labels,$(foreach m,$(SHOWN),$(call repeat,$(SIZES),$(m))))" $(missing) --out=$(basename $@)
 $(OUT)/tables/sizes.md: $(SIZED_OBJECTS:%=%/grasps.log)
