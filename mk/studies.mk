@@ -26,7 +26,9 @@ repeat = $(foreach m,$(1),$(2))
 
 STUDIED := $(foreach m,$(METHODS),$(if $(wildcard $(OUT)/$(m).h5),$(m)))
 MISSING := $(filter-out $(STUDIED),$(METHODS))
-missing = $(if $(MISSING),--missing="$(call labels,$(MISSING))")
+# The untrained network would only take room in figures. $(1): methods that a figure cannot show
+missing = $(if $(filter-out untrained $(1),$(MISSING)),--missing="$(call labels,$(filter-out untrained $(1),$(MISSING)))")
+SHOWN   := $(filter-out untrained,$(STUDIED))
 STUDY   := $(OUT)/eval/studies
 
 # $(1): policy, $(2): objects.csv, $(3): more options
@@ -53,8 +55,7 @@ $(OUT)/figures/best_worst.png: $(STUDY)/base.h5 | $(BIN)/rank_objects
 	$(BIN)/rank_objects --eval=$< --trace=$(OUT)/trace/typical.h5 --objects=$(OUT)/objects.csv --hand=$(HAND) \
 	  --out=$(OUT)/tables/best_worst --picture=$@
 
-# Success per object, all methods (the untrained one would only take room).
-SHOWN := $(filter-out untrained,$(STUDIED))
+# Success per object, all methods.
 PER_OBJECT := sorted hardest others
 $(PER_OBJECT:%=$(OUT)/figures/%.png): $(OUT)/figures/%.png: $(STUDY)/methods.txt $(SHOWN:%=$(OUT)/eval/%.h5) | $(BIN)/plot
 	$(BIN)/plot --kind=$* --in=$(in) --labels="$(call labels,$(SHOWN))" $(missing) --seed=$(SEED) --out=$(basename $@)
@@ -134,7 +135,7 @@ GREW := $(foreach m,$(filter-out gate,$(TRAINED)),$(call states,$(m))) \
 GREW_AS := $(foreach m,$(filter-out gate,$(TRAINED)),$(call repeat,$(call states,$(m)),$(m))) \
   $(if $(filter gate,$(TRAINED)),$(call repeat,$(call states,base) $(call states,gate),gate))
 $(OUT)/figures/samples.png: $(STUDY)/methods.txt $(GREW) | $(BIN)/plot
-	$(BIN)/plot --kind=growth --in=$(call commas,$(GREW)) --labels="$(call labels,$(GREW_AS))" $(missing) --out=$(basename $@)
+	$(BIN)/plot --kind=growth --in=$(call commas,$(GREW)) --labels="$(call labels,$(GREW_AS))" $(call missing,uniform) --out=$(basename $@)
 
 # --- All of them --------------------------------------------------------------------------------
 
