@@ -6,7 +6,7 @@
 
 STUDY_EPISODES ?= 10
 STUDY_STARTS   ?= 40
-PUSHES         ?= 0 0.5 1 2 4
+PUSHES         ?= 0 2 5 10 20
 SIZES          ?= 0.6 0.7 0.8 0.9 1.0
 
 .PHONY: studies studied
@@ -25,14 +25,25 @@ labels = $(subst ?, ,$(call commas,$(foreach m,$(1),$(subst $(space),?,$(label_$
 repeat = $(foreach m,$(1),$(2))
 
 STUDIED := $(foreach m,$(METHODS),$(if $(wildcard $(OUT)/$(m).h5),$(m)))
-MISSING := $(filter-out untrained $(STUDIED),$(METHODS))
-# Figures name them: plot is given the files that are not there as well.
-ABSENT  := $(MISSING:%=$(OUT)/%.h5)
+MISSING := $(filter-out $(STUDIED),$(METHODS))
+# The untrained network would only take room in figures. They name the others: plot is given the files
+# that are not there as well.
+SHOWN   := $(filter-out untrained,$(STUDIED))
+GONE    := $(filter-out untrained,$(MISSING))
+ABSENT  := $(GONE:%=$(OUT)/%.h5)
 STUDY   := $(OUT)/eval/studies
 
 # $(1): policy, $(2): objects.csv, $(3): more options
 study = mkdir -p $(@D) && $(BIN)/evaluate $(COMMON) $(RUNS) $(check) $(check_lanes) \
   --eval.episodes=$(STUDY_EPISODES) --policy=$(1) --objects=$(2) $(3) --out=$@ >$(@:.h5=.txt)
+
+# Rewritten only when they change, so that what was made with other ones is remade. $(1): text
+remember = mkdir -p $(@D) && printf '%s\n' '$(1)' >$@.tmp && if cmp -s $@.tmp $@; then rm $@.tmp; else mv $@.tmp $@; fi
+$(STUDY)/episodes.txt: FORCE
+	@$(call remember,$(STUDY_EPISODES))
+$(STUDY)/methods.txt: FORCE
+	@$(call remember,$(SHOWN); $(PUSHES); $(SIZES))
+in = $(call commas,$(ABSENT) $(filter %.h5,$^))
 
 # --- Objects ------------------------------------------------------------------------------------
 
@@ -46,24 +57,23 @@ $(OUT)/figures/best_worst.png: $(STUDY)/base.h5 | $(BIN)/rank_objects
 	$(BIN)/rank_objects --eval=$< --trace=$(OUT)/trace/typical.h5 --objects=$(OUT)/objects.csv --hand=$(HAND) \
 	  --out=$(OUT)/tables/best_worst --picture=$@
 
-# Success per object, all methods (the untrained one would only take room).
-SHOWN := $(filter-out untrained,$(STUDIED))
+# Success per object, all methods.
 PER_OBJECT := sorted hardest others
-$(PER_OBJECT:%=$(OUT)/figures/%.png): $(OUT)/figures/%.png: $(SHOWN:%=$(OUT)/eval/%.h5) | $(BIN)/plot
-	$(BIN)/plot --kind=$* --missing --in=$(call commas,$(ABSENT) $^) --labels="$(call labels,$(MISSING) $(SHOWN))" --seed=$(SEED) --out=$(basename $@)
+$(PER_OBJECT:%=$(OUT)/figures/%.png): $(OUT)/figures/%.png: $(STUDY)/methods.txt $(SHOWN:%=$(OUT)/eval/%.h5) | $(BIN)/plot
+	$(BIN)/plot --kind=$* --missing --in=$(in) --labels="$(call labels,$(GONE) $(SHOWN))" --seed=$(SEED) --out=$(basename $@)
 
 # --- Pushes -------------------------------------------------------------------------------------
 
 PUSHED := $(foreach m,$(SHOWN),$(PUSHES:%=$(STUDY)/push/$(m)-%.h5))
 define push_rule
-$(STUDY)/push/$(1)-$(2).h5: $(OUT)/$(1).h5 | $(BIN)/evaluate
+$(STUDY)/push/$(1)-$(2).h5: $(OUT)/$(1).h5 $(STUDY)/episodes.txt | $(BIN)/evaluate
 	$$(call study,$$<,$(OUT)/objects.csv,--eval.push=$(2))
 endef
 $(foreach m,$(SHOWN),$(foreach f,$(PUSHES),$(eval $(call push_rule,$(m),$(f)))))
-$(OUT)/figures/push.png: $(PUSHED) | $(BIN)/plot
-	$(BIN)/plot --kind=study --x="push on the object for a control step, once a second (N)" --missing --in=$(call commas,$(ABSENT) $^) \
-	  --values=$(call commas,$(call repeat,$(MISSING),0) $(call repeat,$(SHOWN),$(PUSHES))) \
-	  --labels="$(call labels,$(MISSING) $(foreach m,$(SHOWN),$(call repeat,$(PUSHES),$(m))))" --out=$(basename $@)
+$(OUT)/figures/push.png: $(STUDY)/methods.txt $(PUSHED) | $(BIN)/plot
+	$(BIN)/plot --kind=study --x="push (N)" --missing --in=$(in) \
+	  --values=$(call commas,$(call repeat,$(GONE),0) $(call repeat,$(SHOWN),$(PUSHES))) \
+	  --labels="$(call labels,$(GONE) $(foreach m,$(SHOWN),$(call repeat,$(PUSHES),$(m))))" --out=$(basename $@)
 
 # --- Sizes --------------------------------------------------------------------------------------
 
@@ -91,14 +101,14 @@ $(SIZES:%=$(SIZED)/%.csv): $(SIZED)/%.csv: $(OUT)/objects.csv $(SIZED_OBJECTS:%=
 
 SIZE_FILES := $(foreach m,$(SHOWN),$(SIZES:%=$(STUDY)/size/$(m)-%.h5))
 define size_study_rule
-$(STUDY)/size/$(1)-$(2).h5: $(OUT)/$(1).h5 $(SIZED)/$(2).csv | $(BIN)/evaluate
+$(STUDY)/size/$(1)-$(2).h5: $(OUT)/$(1).h5 $(SIZED)/$(2).csv $(STUDY)/episodes.txt | $(BIN)/evaluate
 	$$(call study,$$<,$(SIZED)/$(2).csv)
 endef
 $(foreach m,$(SHOWN),$(foreach s,$(SIZES),$(eval $(call size_study_rule,$(m),$(s)))))
-$(OUT)/figures/size.png: $(SIZE_FILES) | $(BIN)/plot
-	$(BIN)/plot --kind=study --x="size of the objects (1: 0.1 m long)" --missing --in=$(call commas,$(ABSENT) $^) \
-	  --values=$(call commas,$(call repeat,$(MISSING),0) $(call repeat,$(SHOWN),$(SIZES))) \
-	  --labels="$(call labels,$(MISSING) $(foreach m,$(SHOWN),$(call repeat,$(SIZES),$(m))))" --out=$(basename $@)
+$(OUT)/figures/size.png: $(STUDY)/methods.txt $(SIZE_FILES) | $(BIN)/plot
+	$(BIN)/plot --kind=study --x="size (1: 0.1 m long)" --missing --in=$(in) \
+	  --values=$(call commas,$(call repeat,$(GONE),0) $(call repeat,$(SHOWN),$(SIZES))) \
+	  --labels="$(call labels,$(GONE) $(foreach m,$(SHOWN),$(call repeat,$(SIZES),$(m))))" --out=$(basename $@)
 $(OUT)/tables/sizes.md: $(SIZED_OBJECTS:%=%/grasps.log)
 	@mkdir -p $(@D)
 	@{ printf 'Starts found at each size; an object without any at one of them is left out of figures/size.png.\n\n'; \
@@ -116,9 +126,9 @@ BEFORE_gate := $(OUT)/base.h5 $(EXPERT_FILES)
 snapshots = $(basename $(notdir $(sort $(wildcard $(OUT)/snapshots/$(1)/*.h5))))
 states    = $(addprefix $(STUDY)/growth/$(1)-,$(addsuffix .h5,$(call snapshots,$(1)) last))
 define growth_rules
-$(STUDY)/growth/$(1)-last.h5: $(OUT)/$(1).h5 | $(BIN)/evaluate
+$(STUDY)/growth/$(1)-last.h5: $(OUT)/$(1).h5 $(STUDY)/episodes.txt | $(BIN)/evaluate
 	$$(call study,$$<,$(OUT)/objects.csv,$(if $(BEFORE_$(1)),--earlier=$(call commas,$(BEFORE_$(1)))))
-$(addprefix $(STUDY)/growth/$(1)-,$(addsuffix .h5,$(call snapshots,$(1)))): $(STUDY)/growth/$(1)-%.h5: $(OUT)/snapshots/$(1)/%.h5 | $(BIN)/evaluate
+$(addprefix $(STUDY)/growth/$(1)-,$(addsuffix .h5,$(call snapshots,$(1)))): $(STUDY)/growth/$(1)-%.h5: $(OUT)/snapshots/$(1)/%.h5 $(STUDY)/episodes.txt | $(BIN)/evaluate
 	$$(call study,$$<,$(OUT)/objects.csv,$(if $(BEFORE_$(1)),--earlier=$(call commas,$(BEFORE_$(1)))))
 endef
 $(foreach m,$(TRAINED),$(eval $(call growth_rules,$(m))))
@@ -126,8 +136,9 @@ GREW := $(foreach m,$(filter-out gate,$(TRAINED)),$(call states,$(m))) \
   $(if $(filter gate,$(TRAINED)),$(call states,base) $(call states,gate))
 GREW_AS := $(foreach m,$(filter-out gate,$(TRAINED)),$(call repeat,$(call states,$(m)),$(m))) \
   $(if $(filter gate,$(TRAINED)),$(call repeat,$(call states,base) $(call states,gate),gate))
-$(OUT)/figures/samples.png: $(GREW) | $(BIN)/plot
-	$(BIN)/plot --kind=growth --missing --in=$(call commas,$(ABSENT) $(GREW)) --labels="$(call labels,$(MISSING) $(GREW_AS))" --out=$(basename $@)
+$(OUT)/figures/samples.png: $(STUDY)/methods.txt $(GREW) | $(BIN)/plot
+	$(BIN)/plot --kind=growth --missing --in=$(call commas,$(filter-out %/uniform.h5,$(ABSENT)) $(GREW)) \
+	  --labels="$(call labels,$(filter-out uniform,$(GONE)) $(GREW_AS))" --out=$(basename $@)
 
 # --- All of them --------------------------------------------------------------------------------
 

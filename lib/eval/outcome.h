@@ -16,7 +16,7 @@ namespace dexremoe {
 // orientation.
 inline constexpr int kJamSteps = 60;      // control steps; a second at the paper's rate
 inline constexpr int kJamFingers = 2;     // tips in contact
-inline constexpr double kJamAngle = 0.1;  // rad
+inline constexpr double kJamAngle = 0.2;  // rad; half the tolerance: trembling is not turning
 
 // How long one object has not turned while fingers pressed it.
 class StillClock {

@@ -5,12 +5,13 @@
 #include "base/check.h"
 #include "base/error.h"
 #include "base/random.h"
+#include "eval/panels.h"
 #include "eval/study_plots.h"
 
 namespace dexremoe {
 namespace {
 
-constexpr char kOurs[] = "#D55E00", kOther[] = "#0072B2", kFaint[] = "#9FB8C8";
+using namespace panels;
 
 const Estimate& SuccessesOf(const EvaluatedMethod& method, double tolerance, int object) {
   return RunAt(method, tolerance).metrics.objects[object][ObjectMetric::kSuccesses];
@@ -61,64 +62,6 @@ double HighestInterval(const std::vector<EvaluatedMethod>& methods, double toler
   return 1.04 * highest;
 }
 
-// Panels of one size in rows, with room for labels on all sides; cm.
-struct Grid {
-  std::size_t across, down;
-  double panel_width, panel_height, left, bottom, gap_x, gap_y, top;
-  double width() const { return left + static_cast<double>(across) * (panel_width + gap_x); }
-  double height() const {
-    return bottom + top + static_cast<double>(down) * panel_height +
-           static_cast<double>(down - 1) * gap_y;
-  }
-};
-
-std::string GridScript(const Grid& grid) {
-  return fmt::format(
-      "set multiplot layout {},{} margins {:.4f},{:.4f},{:.4f},{:.4f} spacing {:.4f},{:.4f}\n"
-      "unset key\nset border 3 lw 0.7\nset tics nomirror out scale 0.4 font \"DejaVu Sans,7\"\n",
-      grid.down, grid.across, grid.left / grid.width(), 1 - grid.gap_x / grid.width(),
-      grid.bottom / grid.height(), 1 - grid.top / grid.height(), grid.gap_x / grid.width(),
-      grid.gap_y / grid.height());
-}
-
-std::string TitleScript(const std::string& title) {
-  return fmt::format("set title {} font \"DejaVu Sans,8\" offset 0,-0.9\n", GnuplotQuoted(title));
-}
-
-// S and its interval of one block as points over the objects' places, shifted by so much.
-std::string PointsScript(std::size_t method, const char* color, const char* shift) {
-  return fmt::format(
-      "data index {0} using ($1{2}):4:(0):($5-$4) with vectors nohead lw 0.7 lc rgb \"{1}\", \\\n"
-      "  data index {0} using ($1{2}):3 with linespoints pt 7 ps 0.3 lw 0.8 lc rgb \"{1}\"",
-      method, color, shift);
-}
-
-// Method m, the last beside it; labels on the outer sides of the grid alone.
-std::string MethodPanel(const std::vector<EvaluatedMethod>& methods, std::size_t m, bool left,
-                        bool bottom) {
-  const std::size_t last = methods.size() - 1;
-  std::string script = TitleScript(methods[m].label);
-  script += fmt::format(
-      "set xlabel {} font \"DejaVu Sans,7\" offset 0,0.6\nset ylabel {} font \"DejaVu Sans,7\" "
-      "offset 1.2,0\nplot ",
-      GnuplotQuoted(bottom ? "objects; orange: " + methods[last].label : ""),
-      GnuplotQuoted(left ? "successes per episode" : ""));
-  if (m < last) script += PointsScript(m, kOther, "-0.1") + ", \\\n  ";
-  return script + PointsScript(last, kOurs, "+0.1") + "\n";
-}
-
-// A panel that says which methods were not evaluated.
-std::string MissingPanel(const std::vector<std::string>& missing) {
-  std::string script =
-      "unset border\nunset tics\nunset grid\nunset xlabel\nunset ylabel\n" + TitleScript("missing");
-  for (std::size_t k = 0; k < missing.size(); ++k)
-    script +=
-        fmt::format("set label {} {} at graph 0.5,graph {:.3f} center textcolor rgb \"#808080\"\n",
-                    k + 1, GnuplotQuoted(missing[k]),
-                    0.9 - 0.8 * static_cast<double>(k) / static_cast<double>(missing.size()));
-  return script + "plot [0:1] [0:1] NaN\n";
-}
-
 // The rows' names on the left-most panels; the last, ours, on top.
 std::string MethodTics(const std::vector<EvaluatedMethod>& methods,
                        const std::vector<std::string>& missing, bool named) {
@@ -154,26 +97,24 @@ Figure SortedFigure(const std::vector<EvaluatedMethod>& methods, double toleranc
   std::vector<int> objects = ObjectsOfSplit(methods.back().eval, true);
   if (objects.empty()) Fail("{}: expected training objects, found none", methods.back().label);
   SortBySuccess(methods, tolerance, methods.size() - 1, methods.size(), objects);
-  const std::size_t panels = std::max<std::size_t>(1, methods.size() - 1);
-  const std::size_t all = panels + (missing.empty() ? 0 : 1);
-  const std::size_t across = std::min<std::size_t>(4, all);
-  const Grid grid{across, (all + across - 1) / across, 4.0, 2.9, 1.3, 1.2, 0.75, 0.85, 0.7};
   const double highest = HighestInterval(methods, tolerance, objects);
-  Figure figure;
-  figure.width = grid.width();
-  figure.height = grid.height();
-  figure.data = PanelData(methods, tolerance, objects);
-  figure.script = GridScript(grid);
-  figure.script += fmt::format(
-      "set grid ytics lc rgb \"#D8D8D8\" lw 0.5 lt 1\nset xrange [0.3:{}.7]\nset yrange "
-      "[0:{:.4g}]\n"
-      "set xtics format \"\" scale 0\nset ytics {:.4g}\n",
+  Pairs pairs;
+  for (const EvaluatedMethod& method : methods) pairs.labels.push_back(method.label);
+  pairs.missing = missing;
+  pairs.data = PanelData(methods, tolerance, objects);
+  pairs.x_label = "training objects";
+  pairs.axes = fmt::format(
+      "set xrange [0.3:{}.7]\nset yrange [0:{:.4g}]\nset xtics format \"\" scale 0\n"
+      "set ytics {:.4g}\n",
       objects.size(), highest, NiceStep(highest, 5));
-  for (std::size_t m = 0; m < panels; ++m)
-    figure.script += MethodPanel(methods, m, m % across == 0, m + across >= all);
-  if (!missing.empty()) figure.script += MissingPanel(missing);
-  figure.script += "unset multiplot\nreset\n";
-  return figure;
+  pairs.plot = [](std::size_t method, const char* color, const char* side) {
+    return fmt::format(
+        "data index {0} using ($1{2}0.1):4:(0):($5-$4) with vectors nohead lw 0.7 lc rgb \"{1}\", "
+        "\\\n  data index {0} using ($1{2}0.1):3 with linespoints pt 7 ps 0.3 lw 0.8 lc rgb "
+        "\"{1}\"",
+        method, color, side);
+  };
+  return PairsFigure(pairs);
 }
 
 Figure ObjectPanelsFigure(const std::vector<EvaluatedMethod>& methods, double tolerance,

@@ -2,12 +2,13 @@
 
 #include "base/check.h"
 #include "base/error.h"
+#include "eval/panels.h"
 #include "eval/study_plots.h"
 
 namespace dexremoe {
 namespace {
 
-constexpr std::size_t kMostBands = 4;  // lines; beyond that intervals are drawn as bars
+constexpr std::size_t kMostTogether = 4;  // lines in one panel
 
 struct StudyPoint {
   double x;
@@ -45,31 +46,63 @@ std::string StudyData(const std::vector<StudyLine>& lines, const std::string& x_
   return data;
 }
 
-// Colours repeat after eight lines; dashes tell the next eight apart.
-std::string LineScript(const StudyLine& line, std::size_t k, bool band) {
-  const int index = static_cast<int>(k);
-  const std::string interval =
-      band ? fmt::format(
-                 "data index {} using 1:3:4 with filledcurves fs solid noborder lc rgb "
-                 "\"{}\" notitle",
-                 k, PaletteColor(index, 0xC0))
-           : fmt::format(
-                 "data index {} using 1:3:(0):($4-$3) with vectors nohead lw 0.8 lc rgb "
-                 "\"{}\" notitle",
-                 k, PaletteColor(index, 0x90));
+std::string LineScript(std::size_t line, const std::string& color) {
   return fmt::format(
-      "{0}, \\\n  data index {1} using 1:2 with linespoints pt {2} ps 0.45 lw 1.5{3} lc rgb "
-      "\"{4}\" title {5}",
-      interval, k, k < 8 ? 7 : 5, k < 8 ? "" : " dt 2", PaletteColor(index),
-      GnuplotQuoted(line.label));
+      "data index {0} using 1:3:4 with filledcurves fs transparent solid 0.25 noborder lc rgb "
+      "\"{1}\" notitle, \\\n  data index {0} using 1:2 with linespoints pt 7 ps 0.4 lw 1.5 lc rgb "
+      "\"{1}\"",
+      line, color);
 }
 
-// From zero, unless the values stand far from it.
+// From zero, unless the values stand closer to each other than to it.
 std::string RangeOf(const std::vector<double>& x) {
   const auto [least, most] = std::minmax_element(x.begin(), x.end());
-  if (*least <= 0.3 * *most) return "[0:*]";
+  if (*least <= 0.5 * *most) return "[0:*]";
   const double margin = std::max(0.04 * (*most - *least), 1e-3 * *most);
   return fmt::format("[{:.6g}:{:.6g}]", *least - margin, *most + margin);
+}
+
+// All lines in one panel.
+Figure TogetherFigure(const std::vector<StudyLine>& lines, const std::string& data,
+                      const std::string& range, const std::string& x_label, double tolerance) {
+  Figure figure;
+  figure.width = 14;
+  figure.height = 8.5;
+  figure.data = data;
+  figure.script = fmt::format(
+      "set key top left reverse Left samplen 1.5\n"
+      "set border 3 lw 0.7\nset grid ytics lc rgb \"#D8D8D8\" lw 0.5 lt 1\n"
+      "set xtics nomirror out scale 0.5\nset ytics nomirror out scale 0.5\n"
+      "set xrange {}\nset yrange [0:*]\nset xlabel {}\n"
+      "set ylabel \"successes per episode at {} rad\"\nplot ",
+      range, GnuplotQuoted(x_label), tolerance);
+  for (std::size_t k = 0; k < lines.size(); ++k)
+    figure.script += fmt::format("{}{} title {}", k > 0 ? ", \\\n  " : "",
+                                 LineScript(k, PaletteColor(static_cast<int>(k))),
+                                 GnuplotQuoted(lines[k].label));
+  figure.script += "\nreset\n";
+  return figure;
+}
+
+// Each line beside the last, in a panel of its own.
+Figure PairedFigure(const std::vector<StudyLine>& lines, const std::string& data,
+                    const std::string& range, const std::string& x_label,
+                    const std::vector<std::string>& missing) {
+  double highest = 1e-3;
+  panels::Pairs pairs;
+  for (const StudyLine& line : lines) {
+    pairs.labels.push_back(line.label);
+    for (const StudyPoint& p : line.points) highest = std::max(highest, 1.04 * p.successes.high);
+  }
+  pairs.missing = missing;
+  pairs.data = data;
+  pairs.x_label = x_label;
+  pairs.axes = fmt::format("set xrange {}\nset yrange [0:{:.4g}]\nset ytics {:.4g}\n", range,
+                           highest, NiceStep(highest, 5));
+  pairs.plot = [](std::size_t line, const char* color, const char*) {
+    return LineScript(line, color);
+  };
+  return PairsFigure(pairs);
 }
 
 }  // namespace
@@ -79,25 +112,10 @@ Figure StudyFigure(const std::vector<EvaluatedMethod>& methods, const std::vecto
                    const std::vector<std::string>& missing) {
   DEX_CHECK_EQ(methods.size(), x.size());
   const std::vector<StudyLine> lines = LinesOf(methods, x, tolerance);
-  const bool few = lines.size() <= kMostBands;
-  Figure figure;
-  figure.width = few ? 14 : 17;
-  figure.height = 8.5;
-  figure.data = StudyData(lines, x_label);
-  figure.script = fmt::format(
-      "set key {} reverse Left samplen 1.5\n"
-      "set border 3 lw 0.7\nset grid ytics lc rgb \"#D8D8D8\" lw 0.5 lt 1\n"
-      "set xtics nomirror out scale 0.5\nset ytics nomirror out scale 0.5\n"
-      "set xrange {}\nset yrange [0:*]\nset xlabel {}\n"
-      "set ylabel \"successes per episode at {} rad\"\nplot ",
-      few ? "top left" : "outside right top", RangeOf(x), GnuplotQuoted(x_label), tolerance);
-  for (std::size_t k = 0; k < lines.size(); ++k)
-    figure.script += (k > 0 ? ", \\\n  " : "") + LineScript(lines[k], k, few);
-  for (const std::string& label : missing)
-    figure.script += fmt::format(", \\\n  NaN with lines lc rgb \"#FFFFFF\" title {}",
-                                 GnuplotQuoted(label + " (missing)"));
-  figure.script += "\nreset\n";
-  return figure;
+  const std::string data = StudyData(lines, x_label);
+  return lines.size() <= kMostTogether && missing.empty()
+             ? TogetherFigure(lines, data, RangeOf(x), x_label, tolerance)
+             : PairedFigure(lines, data, RangeOf(x), x_label, missing);
 }
 
 Figure GrowthFigure(const std::vector<EvaluatedMethod>& methods, double tolerance,

@@ -12,7 +12,8 @@
 
 namespace dexremoe {
 
-// S_mean with its 95 % interval against x, one number a method; those of one label make one line.
+// S_mean with its 95 % interval against x, one number a method; those of one label make one line. A
+// few lines share a panel; of more, each stands beside the last.
 // Throws Error when a method lacks the tolerance.
 Figure StudyFigure(const std::vector<EvaluatedMethod>& methods, const std::vector<double>& x,
                    const std::string& x_label, double tolerance,

@@ -37,8 +37,8 @@ TEST(StillClock, CountsControlStepsOfAHeldObjectAtRest) {
 }
 
 TEST(StillClock, ATremblingObjectStandsStillAndASlowlyTurningOneDoesNot) {
-  const auto trembling = [](int k) { return k % 2 == 0 ? 0.04 : -0.04; };
-  const auto turning = [](int k) { return 0.0075 * k; };  // 0.15 rad/s
+  const auto trembling = [](int k) { return k % 2 == 0 ? 0.08 : -0.08; };
+  const auto turning = [](int k) { return 0.015 * k; };  // 0.3 rad/s
   EXPECT_EQ(StillAfter(100, trembling, kHeld), 300);
   for (int k = 1; k <= 100; ++k) EXPECT_LE(StillAfter(k, turning, kHeld), kJamSteps);
 }

@@ -48,7 +48,7 @@ TEST(StudyFigure, JoinsTheMethodsOfALabelInOrderOfX) {
                                                 Method("a", {0, 1})};
   const Figure figure = StudyFigure(methods, {0.8, 0.6, 0.7}, "size", 0.4, {"c"});
   EXPECT_THAT(Column(figure.data), ElementsAre(0.7, 0.8, 0.6));
-  EXPECT_THAT(figure.script, HasSubstr("c (missing)"));
+  EXPECT_THAT(figure.script, HasSubstr("\"c\""));
   EXPECT_THROW(StudyFigure(methods, {1, 2, 3}, "size", 0.1, {}), Error);
 }
 
