@@ -54,17 +54,19 @@ std::string LineScript(std::size_t line, const std::string& color) {
       line, color);
 }
 
-// From zero, unless the values stand closer to each other than to it.
-std::string RangeOf(const std::vector<double>& x) {
+// The abscissa: from zero, unless the values stand closer to each other than to it.
+std::string AbscissaScript(const std::vector<double>& x, int most_tics) {
   const auto [least, most] = std::minmax_element(x.begin(), x.end());
-  if (*least <= 0.5 * *most) return "[0:*]";
-  const double margin = std::max(0.04 * (*most - *least), 1e-3 * *most);
-  return fmt::format("[{:.6g}:{:.6g}]", *least - margin, *most + margin);
+  const double from = *least <= 0.5 * *most ? 0 : *least;
+  const double span = *most - from, margin = from > 0 ? 0.04 * span : 0;
+  if (!(span > 0)) return "set autoscale x\n";
+  return fmt::format("set xrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\n", from - margin,
+                     *most + 0.02 * span, NiceStep(span, most_tics));
 }
 
 // All lines in one panel.
 Figure TogetherFigure(const std::vector<StudyLine>& lines, const std::string& data,
-                      const std::string& range, const std::string& x_label, double tolerance) {
+                      const std::string& abscissa, const std::string& x_label, double tolerance) {
   Figure figure;
   figure.width = 14;
   figure.height = 8.5;
@@ -73,9 +75,9 @@ Figure TogetherFigure(const std::vector<StudyLine>& lines, const std::string& da
       "set key top left reverse Left samplen 1.5\n"
       "set border 3 lw 0.7\nset grid ytics lc rgb \"#D8D8D8\" lw 0.5 lt 1\n"
       "set xtics nomirror out scale 0.5\nset ytics nomirror out scale 0.5\n"
-      "set xrange {}\nset yrange [0:*]\nset xlabel {}\n"
+      "{}set yrange [0:*]\nset xlabel {}\n"
       "set ylabel \"successes per episode at {} rad\"\nplot ",
-      range, GnuplotQuoted(x_label), tolerance);
+      abscissa, GnuplotQuoted(x_label), tolerance);
   for (std::size_t k = 0; k < lines.size(); ++k)
     figure.script += fmt::format("{}{} title {}", k > 0 ? ", \\\n  " : "",
                                  LineScript(k, PaletteColor(static_cast<int>(k))),
@@ -86,7 +88,7 @@ Figure TogetherFigure(const std::vector<StudyLine>& lines, const std::string& da
 
 // Each line beside the last, in a panel of its own.
 Figure PairedFigure(const std::vector<StudyLine>& lines, const std::string& data,
-                    const std::string& range, const std::string& x_label,
+                    const std::string& abscissa, const std::string& x_label,
                     const std::vector<std::string>& missing) {
   double highest = 1e-3;
   panels::Pairs pairs;
@@ -97,8 +99,8 @@ Figure PairedFigure(const std::vector<StudyLine>& lines, const std::string& data
   pairs.missing = missing;
   pairs.data = data;
   pairs.x_label = x_label;
-  pairs.axes = fmt::format("set xrange {}\nset yrange [0:{:.4g}]\nset ytics {:.4g}\n", range,
-                           highest, NiceStep(highest, 5));
+  pairs.axes = fmt::format("{}set yrange [0:{:.4g}]\nset ytics {:.4g}\n", abscissa, highest,
+                           NiceStep(highest, 5));
   pairs.plot = [](std::size_t line, const char* color, const char*) {
     return LineScript(line, color);
   };
@@ -114,8 +116,8 @@ Figure StudyFigure(const std::vector<EvaluatedMethod>& methods, const std::vecto
   const std::vector<StudyLine> lines = LinesOf(methods, x, tolerance);
   const std::string data = StudyData(lines, x_label);
   return lines.size() <= kMostTogether && missing.empty()
-             ? TogetherFigure(lines, data, RangeOf(x), x_label, tolerance)
-             : PairedFigure(lines, data, RangeOf(x), x_label, missing);
+             ? TogetherFigure(lines, data, AbscissaScript(x, 8), x_label, tolerance)
+             : PairedFigure(lines, data, AbscissaScript(x, 5), x_label, missing);
 }
 
 Figure GrowthFigure(const std::vector<EvaluatedMethod>& methods, double tolerance,
