@@ -36,7 +36,8 @@ RECORDED = $(shell grep -v '^CHECK=' $(PRETRAINED)/settings.txt | sed "s/.*/'&'/
 .PHONY: reproduce reproduced
 reproduce: shipped deps  ## evaluate the shipped weights; all tables, figures and films of them, nothing trained
 	+@$(MAKE) $(JOBS) --no-print-directory build
-	@mkdir -p $(REPRODUCED) && cp -ru $(PRETRAINED)/*.h5 $(PRETRAINED)/curves $(REPRODUCED)/
+	@install -C -D -m 644 -t $(REPRODUCED) $(PRETRAINED)/*.h5  # what is there already keeps its time
+	@install -C -D -m 644 -t $(REPRODUCED)/curves $(PRETRAINED)/curves/*.csv
 	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 EXISTING=1 OUT=$(REPRODUCED) $(RECORDED) reproduced
 reproduced: $(PRODUCTS)
 	@$(call name_left_out,$(RUN_TABLES) $(RUN_FIGURES) $(ABLATION_TABLES) $(ABLATION_FIGURES))
