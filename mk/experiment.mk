@@ -277,11 +277,16 @@ $(OUT)/figures/episode.mp4: $(OUT)/eval/gate.h5 | $(BIN)/render
 GROWN_RUNS = $(patsubst results/%/eval/growth/done,%,$(wildcard results/*/eval/growth/done))
 LEARN_COLUMNS := successes_per_600,drop_rate,mean_angle,goal_angle
 
+PUBLISHED_TABLES := $(foreach t,table1 categories ablation_experts ablation_gate,$(addprefix $(t).,md csv tex)) \
+  methods.md best_worst.md best_worst.csv sizes.md
+PUBLISHED_FIGURES := $(addsuffix .png,objects parts hand hand_parts curves per_object tsne strip baselines adr \
+  ablation_experts ablation_gate best_worst sorted hardest others push size samples)
+
 .PHONY: publish
-publish:  ## copy the tables and figures of a finished run to results/tables and paper_figs
+publish:  ## copy what tables and figures a run has to results/tables and paper_figs
 	@mkdir -p results/tables paper_figs
-	cp $(foreach t,table1 categories,$(addprefix $(OUT)/tables/$(t).,md csv tex)) $(OUT)/tables/methods.md results/tables/
-	cp $(addprefix $(OUT)/figures/,objects.png parts.png hand.png hand_parts.png curves.png per_object.png tsne.png strip.png baselines.png) paper_figs/
+	cp $(wildcard $(PUBLISHED_TABLES:%=$(OUT)/tables/%)) results/tables/
+	cp $(wildcard $(PUBLISHED_FIGURES:%=$(OUT)/figures/%)) paper_figs/
 	@for run in cube six; do for table in results/$$run*/tables/learned.md; do [ ! -f $$table ] || \
 	  cp $$table results/tables/learned_$$(basename $$(dirname $$(dirname $$table))).md; done; done
 	@runs=$$(ls -d results/{cube,six,desk}*/curves/base.csv 2>/dev/null | cut -d/ -f2 || true); \

@@ -39,6 +39,6 @@ reproduce: shipped deps  ## evaluate the shipped weights; all tables, figures an
 	@install -C -D -m 644 -t $(REPRODUCED) $(PRETRAINED)/*.h5  # what is there already keeps its time
 	@install -C -D -m 644 -t $(REPRODUCED)/curves $(PRETRAINED)/curves/*.csv
 	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 EXISTING=1 OUT=$(REPRODUCED) $(RECORDED) reproduced
-reproduced: $(PRODUCTS)
+reproduced: $(PRODUCTS) $(OBJECT_STUDIES)
 	@$(call name_left_out,$(RUN_TABLES) $(RUN_FIGURES) $(ABLATION_TABLES) $(ABLATION_FIGURES))
-	@printf '\nDone. Look at:\n'; printf '  %s\n' $(PRODUCTS)
+	@printf '\nDone. Look at:\n'; printf '  %s\n' $^

@@ -62,6 +62,9 @@ PER_OBJECT := sorted hardest others
 $(PER_OBJECT:%=$(OUT)/figures/%.png): $(OUT)/figures/%.png: $(STUDY)/methods.txt $(SHOWN:%=$(OUT)/eval/%.h5) | $(BIN)/plot
 	$(BIN)/plot --kind=$* --missing --in=$(in) --labels="$(call labels,$(GONE) $(SHOWN))" --seed=$(SEED) --out=$(basename $@)
 
+OBJECT_STUDIES := $(addprefix $(OUT)/figures/,$(if $(filter base,$(STUDIED)),best_worst.png) \
+  $(if $(SHOWN),$(PER_OBJECT:%=%.png)))
+
 # --- Pushes -------------------------------------------------------------------------------------
 
 PUSHED := $(foreach m,$(SHOWN),$(PUSHES:%=$(STUDY)/push/$(m)-%.h5))

@@ -52,7 +52,7 @@ class Reproduce : public testing::Test {
     const std::string run = folder_.string();
     const Outcome outcome =
         Make("-n --no-print-directory EXPERIMENT=1 OBJECTS=" + run + "/meshes OUT=" + run +
-             "/run OBJDIR=" + run + "/objects " + words + " " + target);
+             "/run " + words + " " + target);
     EXPECT_EQ(outcome.code, 0) << outcome.text;
     return outcome.text;
   }

@@ -44,7 +44,7 @@ TEST(Baseline, RoutedMethodsLogEntropyLoadAndLosses) {
     const CurveRow& row = run.trainer.state().curve.back();
     const bool routed = std::string(method) != "privshape";
     const double entropy = row[21], least = row[22], most = row[23], loss = row[24];
-    EXPECT_EQ(entropy > 0, routed && std::string(method) != "switch");
+    EXPECT_EQ(entropy > 0, routed);
     EXPECT_EQ(most > 0, routed);
     EXPECT_LE(least, most);
     EXPECT_LE(most, 1 + 1e-9);
