@@ -130,9 +130,9 @@ snapshots = $(basename $(notdir $(sort $(wildcard $(OUT)/snapshots/$(1)/*.h5))))
 states    = $(addprefix $(STUDY)/growth/$(1)-,$(addsuffix .h5,$(call snapshots,$(1)) last))
 define growth_rules
 $(STUDY)/growth/$(1)-last.h5: $(OUT)/$(1).h5 $(STUDY)/episodes.txt | $(BIN)/evaluate
-	$$(call study,$$<,$(OUT)/objects.csv,$(if $(BEFORE_$(1)),--earlier=$(call commas,$(BEFORE_$(1)))))
+	$$(call study,$$<,$(OUT)/objects.csv,$(if $(BEFORE_$(1)),--earlier=$$(call commas,$(BEFORE_$(1)))))
 $(addprefix $(STUDY)/growth/$(1)-,$(addsuffix .h5,$(call snapshots,$(1)))): $(STUDY)/growth/$(1)-%.h5: $(OUT)/snapshots/$(1)/%.h5 $(STUDY)/episodes.txt | $(BIN)/evaluate
-	$$(call study,$$<,$(OUT)/objects.csv,$(if $(BEFORE_$(1)),--earlier=$(call commas,$(BEFORE_$(1)))))
+	$$(call study,$$<,$(OUT)/objects.csv,$(if $(BEFORE_$(1)),--earlier=$$(call commas,$(BEFORE_$(1)))))
 endef
 $(foreach m,$(TRAINED),$(eval $(call growth_rules,$(m))))
 GREW := $(foreach m,$(filter-out gate,$(TRAINED)),$(call states,$(m))) \
