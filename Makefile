@@ -44,6 +44,7 @@ include mk/ablations.mk
 include mk/studies.mk
 include mk/products.mk
 include mk/reproduce.mk
+include mk/publish.mk
 include mk/ablate_recipe.mk
 
 .PHONY: help

@@ -13,7 +13,7 @@ namespace dexremoe {
 
 // A hand stands jammed when its object has not turned for longer than kJamSteps although at least
 // kJamFingers tips pressed it all the while. Not turning means: within kJamAngle of one
-// orientation.
+// orientation. NOTE(paper): it gives neither number; 0.1 rad would miss trembling objects.
 inline constexpr int kJamSteps = 60;      // control steps; a second at the paper's rate
 inline constexpr int kJamFingers = 2;     // tips in contact
 inline constexpr double kJamAngle = 0.2;  // rad; half the tolerance: trembling is not turning

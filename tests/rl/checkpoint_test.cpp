@@ -12,15 +12,6 @@
 namespace dexremoe {
 namespace {
 
-std::string MessageOf(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 // A file's structure and trainable blocks, without the blocks themselves.
 void WriteNetworkHead(H5Writer& file, const PolicyStructure& structure) {
   WriteStructure(file, structure);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
+#include "base/error.h"
 #include "base/thread_pool.h"
 #include "rl/checkpoint.h"
 #include "rl/start.h"
@@ -69,6 +71,29 @@ struct ToyRun {
 };
 
 inline Provenance ToyProvenance() { return {"test", "samples = 1\nseed = 1\n", 1, {}}; }
+
+// The objects of ToyTable.
+inline std::vector<TaskObject> ToyObjects() {
+  const ShapeTable table = ToyTable();
+  std::vector<TaskObject> objects(table.objects());
+  for (int k = 0; k < table.objects(); ++k) {
+    objects[k].name = table.names[k];
+    objects[k].category = table.category[k];
+    objects[k].feature.assign(table.feature.begin() + k * kShapeFeatureSize,
+                              table.feature.begin() + (k + 1) * kShapeFeatureSize);
+  }
+  return objects;
+}
+
+// What the Error says that `body` throws.
+inline std::string MessageOf(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
 
 // A path in a folder of its own, removed at the end.
 class TemporaryFolder {

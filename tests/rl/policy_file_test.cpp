@@ -12,27 +12,6 @@
 namespace dexremoe {
 namespace {
 
-std::vector<TaskObject> ToyObjects() {
-  const ShapeTable table = ToyTable();
-  std::vector<TaskObject> objects(table.objects());
-  for (int k = 0; k < table.objects(); ++k) {
-    objects[k].name = table.names[k];
-    objects[k].category = table.category[k];
-    objects[k].feature.assign(table.feature.begin() + k * kShapeFeatureSize,
-                              table.feature.begin() + (k + 1) * kShapeFeatureSize);
-  }
-  return objects;
-}
-
-std::string MessageOf(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TrainState TrainedGate(const TrainState& base) {
   const std::vector<TrainState> experts(3, StartExpert(ToyStart(), base, "base.h5"));
   ToyRun run(StartGate(ToyStart(), ToyPolicy(), experts, {"a.h5", "b.h5", "c.h5"}));

@@ -11,18 +11,6 @@
 namespace dexremoe {
 namespace {
 
-std::vector<TaskObject> ToyObjects() {
-  const ShapeTable table = ToyTable();
-  std::vector<TaskObject> objects(table.objects());
-  for (int k = 0; k < table.objects(); ++k) {
-    objects[k].name = table.names[k];
-    objects[k].category = table.category[k];
-    objects[k].feature.assign(table.feature.begin() + k * kShapeFeatureSize,
-                              table.feature.begin() + (k + 1) * kShapeFeatureSize);
-  }
-  return objects;
-}
-
 TEST(PolicyRunner, ActsWithTheMeansOfTheRollout) {
   const TemporaryFolder folder("runner");
   ToyRun run(ToyBase());
