@@ -1,101 +1,20 @@
 #include "base/options.h"
 
-#include <toml++/toml.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <string_view>
 
 #include "base/check.h"
 #include "base/error.h"
+#include "base/option_names.h"
+#include "base/option_text.h"
 #include "base/version.h"
 
 namespace dexremoe {
 namespace {
-
-// Every section that a configuration file may have beside the tools' own names. A section outside
-// both lists is an error; a section that this tool does not use is left to the tools that do.
-constexpr std::array<std::string_view, 16> kSections = {
-    "load", "scale",  "decompose", "cloud", "shape", "hand", "sim",  "grasp",
-    "task", "random", "policy",    "ppo",   "adr",   "eval", "tsne", "render"};
-constexpr std::array<std::string_view, 28> kTools = {
-    "make_objects",   "scale_mesh",     "decompose",      "sample_cloud",  "train_shape",
-    "describe_shape", "hand_info",      "find_grasps",    "train_base",    "train_expert",
-    "train_gate",     "train_baseline", "export_weights", "evaluate",      "tabulate",
-    "list_methods",   "embed_gate",     "plot",           "render",        "h5_info",
-    "h5_diff",        "mesh_info",      "list_objects",   "group_objects", "rank_objects",
-    "bench_sim",      "validate_sim",   "bench_decompose"};
-
-template <typename List>
-bool Contains(const List& list, std::string_view word) {
-  return std::find(list.begin(), list.end(), word) != list.end();
-}
-
-// Edit distance, to suggest the key that was meant.
-std::size_t Distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
-      diagonal = above;
-    }
-  }
-  return row[b.size()];
-}
-
-template <typename Names>
-std::string Suggestion(std::string_view word, const Names& names) {
-  std::string_view best;
-  std::size_t best_distance = 4;
-  for (const auto& name : names) {
-    const std::size_t distance = Distance(word, name);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = name;
-    }
-  }
-  return best.empty() ? "" : fmt::format("; did you mean '{}'?", best);
-}
-
-// How a value stands in the provenance text and in a configuration file.
-std::string Print(bool value) { return value ? "true" : "false"; }
-std::string Print(const std::string& value) { return '"' + value + '"'; }
-template <typename T>
-std::string Print(T value) {
-  return fmt::format("{}", value);
-}
-template <typename T>
-std::string Print(const std::vector<T>& values) {
-  std::string text;
-  for (const T& value : values) text += (text.empty() ? "" : ", ") + Print(value);
-  return '[' + text + ']';
-}
-
-// A TOML value as it would be written on the command line.
-std::string FlagText(const std::string& path, const std::string& key, const toml::node& node) {
-  if (const auto* text = node.as_string()) return text->get();
-  if (const auto* flag = node.as_boolean()) return Print(flag->get());
-  if (const auto* whole = node.as_integer()) return fmt::format("{}", whole->get());
-  if (const auto* real = node.as_floating_point()) return fmt::format("{}", real->get());
-  if (const auto* list = node.as_array()) {
-    std::string text;
-    for (const toml::node& item : *list)
-      text += (text.empty() ? "" : ",") + FlagText(path, key, item);
-    return text;
-  }
-  throw UsageError(fmt::format(
-      "{}: key '{}': expected a number, text, true, false or a list, found another type", path,
-      key));
-}
 
 // What a number of type T must look like; "" when `text` does. CLI11 itself takes -1 for an
 // unsigned number, and out-of-range ones. A whole number is rewritten, as CLI11 reads 010 as octal.
@@ -242,56 +161,6 @@ std::string Options::Text() const {
   for (const Entry& entry : entries_)
     if (entry.stored) text += entry.name + " = " + entry.print() + "\n";
   return text;
-}
-
-std::string Options::FlagOf(const std::string& path, const std::string& section,
-                            const std::string& key) const {
-  // [decompose] holds both the tool's own options and the library's section of that name.
-  if (section == tool_ && Has(key)) return key;
-  if (const std::string name = section + "." + key; Has(name)) return name;
-  std::vector<std::string> known;
-  for (const Entry& entry : entries_) {
-    if (entry.name.starts_with(section + "."))
-      known.push_back(entry.name.substr(section.size() + 1));
-    else if (section == tool_ && entry.name.find('.') == std::string::npos)
-      known.push_back(entry.name);
-  }
-  throw UsageError(
-      fmt::format("{}: unknown key '{}' in [{}]{}", path, key, section, Suggestion(key, known)));
-}
-
-std::vector<std::string> Options::ReadConfig(const std::string& path) const {
-  toml::table table;
-  try {
-    table = toml::parse_file(path);
-  } catch (const toml::parse_error& error) {
-    throw UsageError(fmt::format("{}: line {}: {}", path, error.source().begin.line,
-                                 std::string(error.description())));
-  }
-  std::vector<std::string> flags;
-  for (const auto& [section_key, node] : table) {
-    const std::string section(section_key.str());
-    const toml::table* keys = node.as_table();
-    if (keys == nullptr)
-      throw UsageError(fmt::format("{}: key '{}' stands outside any [section]", path, section));
-    if (!Contains(kSections, section) && !Contains(kTools, section) && section != tool_) {
-      std::vector<std::string> names(kSections.begin(), kSections.end());
-      names.insert(names.end(), kTools.begin(), kTools.end());
-      throw UsageError(
-          fmt::format("{}: unknown section [{}]{}", path, section, Suggestion(section, names)));
-    }
-    const bool used =
-        section == tool_ || std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-          return entry.name.starts_with(section + ".");
-        });
-    if (!used) continue;
-    for (const auto& [key, value] : *keys) {
-      const std::string name(key.str());
-      flags.push_back(
-          fmt::format("--{}={}", FlagOf(path, section, name), FlagText(path, name, value)));
-    }
-  }
-  return flags;
 }
 
 bool Options::Parse(int argc, const char* const* argv) {
