@@ -44,6 +44,10 @@ $(STUDY)/episodes.txt: FORCE
 $(STUDY)/methods.txt: FORCE
 	@$(call remember,$(SHOWN); $(PUSHES); $(SIZES))
 in = $(call commas,$(ABSENT) $(filter %.h5,$^))
+# Success of all methods against a quantity. $(1): its name and unit, $(2): its values
+plot_study = $(BIN)/plot --kind=study --x="$(1)" --missing --in=$(in) \
+  --values=$(call commas,$(call repeat,$(GONE),0) $(call repeat,$(SHOWN),$(2))) \
+  --labels="$(call labels,$(GONE) $(foreach m,$(SHOWN),$(call repeat,$(2),$(m))))" --out=$(basename $@)
 
 # --- Objects ------------------------------------------------------------------------------------
 
@@ -74,9 +78,7 @@ $(STUDY)/push/$(1)-$(2).h5: $(OUT)/$(1).h5 $(STUDY)/episodes.txt | $(BIN)/evalua
 endef
 $(foreach m,$(SHOWN),$(foreach f,$(PUSHES),$(eval $(call push_rule,$(m),$(f)))))
 $(OUT)/figures/push.png: $(STUDY)/methods.txt $(PUSHED) | $(BIN)/plot
-	$(BIN)/plot --kind=study --x="push (N)" --missing --in=$(in) \
-	  --values=$(call commas,$(call repeat,$(GONE),0) $(call repeat,$(SHOWN),$(PUSHES))) \
-	  --labels="$(call labels,$(GONE) $(foreach m,$(SHOWN),$(call repeat,$(PUSHES),$(m))))" --out=$(basename $@)
+	$(call plot_study,push (N),$(PUSHES))
 
 # --- Sizes --------------------------------------------------------------------------------------
 
@@ -109,9 +111,7 @@ $(STUDY)/size/$(1)-$(2).h5: $(OUT)/$(1).h5 $(SIZED)/$(2).csv $(STUDY)/episodes.t
 endef
 $(foreach m,$(SHOWN),$(foreach s,$(SIZES),$(eval $(call size_study_rule,$(m),$(s)))))
 $(OUT)/figures/size.png: $(STUDY)/methods.txt $(SIZE_FILES) | $(BIN)/plot
-	$(BIN)/plot --kind=study --x="size (1: 0.1 m long)" --missing --in=$(in) \
-	  --values=$(call commas,$(call repeat,$(GONE),0) $(call repeat,$(SHOWN),$(SIZES))) \
-	  --labels="$(call labels,$(GONE) $(foreach m,$(SHOWN),$(call repeat,$(SIZES),$(m))))" --out=$(basename $@)
+	$(call plot_study,size (1: 0.1 m long),$(SIZES))
 $(OUT)/tables/sizes.md: $(SIZED_OBJECTS:%=%/grasps.log)
 	@mkdir -p $(@D)
 	@{ printf 'Starts found at each size; an object without any at one of them is left out of figures/size.png.\n\n'; \

@@ -2,13 +2,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "eval/eval_file.h"
 #include "rl/policy_file.h"
 #include "training_fixture.h"
 
 namespace dexremoe {
 namespace {
 
-class WeightsTool : public TrainingTest {};
+class WeightsTool : public TrainingTest {
+ protected:
+  std::string Evaluate(const std::string& rest) const {
+    return Bin() + "evaluate --config=" + Path("tiny.toml") +
+           " --eval.episodes=6 --eval.tolerances=0.4 --objects=" + Path("objects.csv") + rest;
+  }
+};
 
 TEST_F(WeightsTool, WeightsAreEvaluatedLikeTheirCheckpoint) {
   ASSERT_EQ(Run(TrainBase("base", "--samples=2560"), "base"), 0) << Slurp(Path("base.txt"));
@@ -18,12 +25,9 @@ TEST_F(WeightsTool, WeightsAreEvaluatedLikeTheirCheckpoint) {
             0)
       << Slurp(Path("export.txt"));
   EXPECT_EQ(Slurp(Path("export.txt")), "base,2560,1\n");
-  const std::string evaluate =
-      Bin() + "evaluate --config=" + Path("tiny.toml") +
-      " --eval.episodes=6 --eval.tolerances=0.4 --objects=" + Path("objects.csv");
   for (const char* folder : {"", "weights/"}) {
     const std::string file = Path(std::string(folder) + "base.h5");
-    ASSERT_EQ(Run(evaluate + " --policy=" + file + " --out=" + file + ".eval", "evaluate"), 0)
+    ASSERT_EQ(Run(Evaluate(" --policy=" + file + " --out=" + file + ".eval"), "evaluate"), 0)
         << Slurp(Path("evaluate.txt"));
   }
   EXPECT_EQ(Run(Bin() + "h5_diff " + "--a=" + Path("base.h5.eval") +
@@ -31,6 +35,17 @@ TEST_F(WeightsTool, WeightsAreEvaluatedLikeTheirCheckpoint) {
                 "diff"),
             0)
       << Slurp(Path("diff.txt"));
+}
+
+TEST_F(WeightsTool, SamplesOfEarlierStagesCount) {
+  ASSERT_EQ(Run(TrainBase("base", "--samples=256"), "base"), 0) << Slurp(Path("base.txt"));
+  ASSERT_EQ(Run(TrainBase("longer", "--samples=512"), "longer"), 0) << Slurp(Path("longer.txt"));
+  ASSERT_EQ(Run(Evaluate(" --policy=" + Path("base.h5") + " --earlier=" + Path("base.h5") + "," +
+                         Path("longer.h5") + " --out=" + Path("eval.h5")),
+                "evaluate"),
+            0)
+      << Slurp(Path("evaluate.txt"));
+  EXPECT_EQ(ReadEval(Path("eval.h5")).samples, 256 + 256 + 512);
 }
 
 TEST_F(WeightsTool, AShareOfTheSamplesIsTrained) {
