@@ -115,11 +115,11 @@ void Run(const EvaluateOptions& o, const Options& options) {
   std::unique_ptr<PolicyRunner> runner;
   if (o.policy != kHold) runner = std::make_unique<PolicyRunner>(o.policy, setup.objects, pool);
   const ActFunction act = runner ? PolicyActions(*runner) : HoldActions();
-  if (o.task.goal_angle < 3.14159 || o.task.velocity_tolerance > 1)
+  if (o.task.goal_angle < 3.14159 || o.task.velocity_tolerance > 1 || o.task.gravity_factor < 1)
     LogWarning(
-        "task.goal_angle {} and task.velocity_tolerance {} make the task easier than the "
-        "paper's",
-        o.task.goal_angle, o.task.velocity_tolerance);
+        "task.goal_angle {}, task.velocity_tolerance {} and task.gravity_factor {} make the task "
+        "easier than the paper's",
+        o.task.goal_angle, o.task.velocity_tolerance, o.task.gravity_factor);
   EvalFile file = DescribeEval(o, setup);
   if (runner) file.samples = runner->samples();
   for (const std::string& stage : o.earlier) file.samples += ReadPolicy(stage).samples;

@@ -28,6 +28,7 @@ constexpr Axis kAxes[] = {
     {"goal_angle", "widest goal (rad)", 1, false},
     {"routing_entropy", "entropy of the routing (nats)", 1, false},
     {"velocity_tolerance", "speeds allowed / the task's", 1, false},
+    {"gravity_factor", "gravity / the task's", 1, false},
     {"samples", "samples (millions)", 1e-6, false},
     {"seconds", "minutes of training", 1.0 / 60, false},
 };

@@ -107,6 +107,8 @@ void WriteCurriculum(H5Writer& file, const CurriculumState& s) {
                    {"rad", "", "goals lie within this of the orientation; pi: anywhere"});
   file.WriteScalar("curriculum/velocity_tolerance", s.difficulty.velocity_tolerance,
                    {"1", "", "factor on the speeds a success allows"});
+  file.WriteScalar("curriculum/gravity_factor", s.difficulty.gravity_factor,
+                   {"1", "", "factor on gravity"});
   file.WriteScalar("curriculum/objects", s.difficulty.objects,
                    {"1", "", "objects in training so far; 0: all, from the start"});
   file.WriteScalar("curriculum/angle_next", std::uint8_t{s.angle_next},
@@ -120,6 +122,8 @@ CurriculumState ReadCurriculum(const H5Reader& file) {
   CurriculumState s;
   s.difficulty.goal_angle = file.ReadScalar<double>("curriculum/goal_angle");
   s.difficulty.velocity_tolerance = file.ReadScalar<double>("curriculum/velocity_tolerance");
+  if (file.Has("curriculum/gravity_factor"))
+    s.difficulty.gravity_factor = file.ReadScalar<double>("curriculum/gravity_factor");
   if (file.Has("curriculum/objects"))
     s.difficulty.objects = file.ReadScalar<std::int32_t>("curriculum/objects");
   s.angle_next = file.ReadScalar<std::uint8_t>("curriculum/angle_next") != 0;

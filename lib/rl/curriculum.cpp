@@ -14,6 +14,7 @@ CurriculumState Curriculum::Start() const {
   if (!options_.curriculum) return state;
   state.difficulty.goal_angle = std::min(options_.goal_angle_start, task_.goal_angle);
   state.difficulty.velocity_tolerance = std::max(options_.velocity_start, task_.velocity_tolerance);
+  state.difficulty.gravity_factor = std::min(options_.gravity_start, task_.gravity_factor);
   state.difficulty.objects = std::min(options_.curriculum_objects, objects_);
   return state;
 }
@@ -33,12 +34,16 @@ bool Curriculum::Update(std::int64_t samples, const std::vector<EpisodeRecord>& 
   return rate > options_.curriculum_threshold && Advance(state);
 }
 
-// Moves the one whose turn it is, or the other when that one has arrived; then come the objects.
+// Gravity rises with every advance. Of goals and speeds the one moves whose turn it is, or the
+// other when that one has arrived; then come the objects.
 bool Curriculum::Advance(CurriculumState& state) const {
   TaskDifficulty& now = state.difficulty;
+  const bool gravity_open = now.gravity_factor < task_.gravity_factor;
   const bool angle_open = now.goal_angle < std::min(task_.goal_angle, std::numbers::pi);
   const bool velocity_open = now.velocity_tolerance > task_.velocity_tolerance;
+  now.gravity_factor = std::min(now.gravity_factor + options_.gravity_step, task_.gravity_factor);
   if (!angle_open && !velocity_open) {
+    if (gravity_open) return true;
     if (now.objects == 0 || now.objects == objects_) return false;
     now.objects = std::min(2 * now.objects, objects_);
     return true;

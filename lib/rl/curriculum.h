@@ -1,5 +1,5 @@
-// Goals come nearer and the speed rule is looser at first; both move to the paper's task as the
-// policy succeeds. With options.curriculum_objects, more objects follow then.
+// Goals come nearer, the speed rule is looser and objects weigh less at first; all move to the
+// paper's task as the policy succeeds. With options.curriculum_objects, more objects follow then.
 #pragma once
 
 #include <cstdint>

@@ -18,6 +18,7 @@ const std::map<std::string_view, const char*> kTags = {
     {"value_loss", "loss/value"},
     {"goal_angle", "curriculum/goal_angle"},
     {"velocity_tolerance", "curriculum/velocity"},
+    {"gravity_factor", "curriculum/gravity"},
     {"objects", "curriculum/objects"},
     {"routing_entropy", "routing/entropy"},
     {"expert_load_least", "routing/load_least"},

@@ -12,6 +12,7 @@ namespace dexremoe {
 struct TaskDifficulty {
   double goal_angle = 3.1416;     // rad; pi and more: any goal
   double velocity_tolerance = 1;  // factor on the speeds a success allows
+  double gravity_factor = 1;      // of the episodes to come
   int objects = 0;                // the first of the list, in use; 0: all, from the start
 };
 

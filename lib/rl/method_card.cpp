@@ -61,6 +61,8 @@ std::string CurriculumOf(const std::string& method, const PpoOptions& ppo) {
   if (ppo.curriculum)
     text = fmt::format("goals from {} rad, speeds from {} times the limit", ppo.goal_angle_start,
                        ppo.velocity_start);
+  if (ppo.curriculum && ppo.gravity_start < 1)
+    text += fmt::format(", gravity from {} of its strength", ppo.gravity_start);
   if (ppo.curriculum && ppo.curriculum_objects > 0)
     text += fmt::format(", then objects from {} doubling", ppo.curriculum_objects);
   if (method == "dr") text += "; episodes randomised in fixed ranges";

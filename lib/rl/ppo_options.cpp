@@ -32,18 +32,22 @@ void PpoOptions::Register(Options& options) {
   options.Add("ppo.kl_reference", &kl_reference, "policy that the KL is taken against")
       .Choices({"previous", "rollout"});
   options.Add("ppo.obs_clip", &obs_clip, "limit of normalised inputs").Range(0.1, 1e6);
-  options.Add("ppo.curriculum", &curriculum, "start with near goals and a loose speed rule");
+  options.Add("ppo.curriculum", &curriculum,
+              "start with near goals, a loose speed rule and gravity_start");
   options.Add("ppo.goal_angle_start", &goal_angle_start, "first goal distance, rad").Range(0, 3.15);
   options.Add("ppo.goal_angle_factor", &goal_angle_factor, "widening").Range(1, 10);
   options.Add("ppo.velocity_start", &velocity_start, "first factor on the speeds").Range(1, 1e3);
   options.Add("ppo.velocity_factor", &velocity_factor, "tightening").Range(0.01, 1);
+  options.Add("ppo.gravity_start", &gravity_start, "factor on gravity at first").Range(-10, 1);
+  options.Add("ppo.gravity_step", &gravity_step, "rise of that factor at each advance")
+      .Range(1e-6, 10);
   options.Add("ppo.curriculum_threshold", &curriculum_threshold, "successes per episode to advance")
       .Range(0, 600);
   options.Add("ppo.curriculum_period", &curriculum_period, "samples between decisions")
       .Range(1, 1e12);
   options
       .Add("ppo.curriculum_objects", &curriculum_objects,
-           "objects at first, doubled once goals and speeds are the task's; 0: all")
+           "objects at first, doubled once all else is the task's; 0: all")
       .Range(0, 1 << 20);
   options.Add("ppo.stats_window", &stats_window, "last episodes in the curve; 0: as environments")
       .Range(0, 1 << 24);

@@ -46,6 +46,8 @@ struct PpoOptions {
   double goal_angle_factor = 1.1;
   double velocity_start = 5.0;  // times the speeds a success allows
   double velocity_factor = 0.85;
+  double gravity_start = 1;           // times gravity; below 0 objects fall into the palm at first
+  double gravity_step = 0.05;         // rise of that factor with every advance
   double curriculum_threshold = 1.5;  // successes per episode
   double curriculum_period = 5e5;     // samples between decisions
   // Objects to begin with; once goals and speeds are the task's they double with every advance. 0:

@@ -26,6 +26,7 @@ class ReorientEnv final : public VecEnv {
   void SetDifficulty(const TaskDifficulty& difficulty) override {
     batch_.mutable_options().goal_angle = difficulty.goal_angle;
     batch_.mutable_options().velocity_tolerance = difficulty.velocity_tolerance;
+    batch_.mutable_options().gravity_factor = difficulty.gravity_factor;
     batch_.mutable_options().objects_in_use = difficulty.objects;
   }
   void SetRandomRanges(const std::vector<double>& low, const std::vector<double>& high) override {

@@ -188,10 +188,11 @@ TrainState RunStage(const StageOptions& stage, const Options& options, const Sta
   ReorientBatch batch(stage.task, stage.sim, hand, objects, envs, stage.seed, pool);
   batch.PlaceIn(ranks.rank() * envs, stage.ppo.envs);
   ReorientEnv env(batch);
-  const StageStart start = {stage.ppo,
-                            {stage.task.goal_angle, stage.task.velocity_tolerance},
-                            MakeShapeTable(objects, FeatureSize(kind.cloud_points)),
-                            stage.seed};
+  const StageStart start = {
+      stage.ppo,
+      {stage.task.goal_angle, stage.task.velocity_tolerance, stage.task.gravity_factor},
+      MakeShapeTable(objects, FeatureSize(kind.cloud_points)),
+      stage.seed};
   Trainer trainer(stage.ppo, start.task, FirstState(stage, options, kind, start, env, ranks), env,
                   pool, ranks, stage.adr);
   std::optional<RunFiles> files;

@@ -24,7 +24,7 @@ struct Normalizers {
 };
 
 // One line of the learning curve; columns as kCurveColumns.
-inline constexpr std::array<const char*, 25> kCurveColumns = {"iteration",
+inline constexpr std::array<const char*, 26> kCurveColumns = {"iteration",
                                                               "samples",
                                                               "successes_per_episode",
                                                               "successes_per_600",
@@ -44,6 +44,7 @@ inline constexpr std::array<const char*, 25> kCurveColumns = {"iteration",
                                                               "gradient_norm",
                                                               "goal_angle",
                                                               "velocity_tolerance",
+                                                              "gravity_factor",
                                                               "objects",
                                                               "routing_entropy",
                                                               "expert_load_least",
@@ -54,7 +55,8 @@ using CurveRow = std::array<double, kCurveColumns.size()>;
 // What decides between two states of one run: how far the curriculum had come, then success at that
 // difficulty.
 struct RunScore {
-  // rad, goal angle over velocity tolerance, times the share of objects: grows with the curriculum.
+  // Goal angle over velocity tolerance, times the share of objects, and the factor on gravity:
+  // grows with the curriculum.
   double progress = 0;
   double successes = -1;  // per episode, mean over the window
   auto operator<=>(const RunScore&) const = default;

@@ -122,7 +122,8 @@ void Trainer::Judge() {
   const double share =
       now.objects > 0 ? static_cast<double>(now.objects) / state_.table.objects() : 1.0;
   const RunScore score = {
-      share * std::min(now.goal_angle, std::numbers::pi) / now.velocity_tolerance,
+      share * std::min(now.goal_angle, std::numbers::pi) / now.velocity_tolerance +
+          now.gravity_factor,
       MeansOf(state_.window).successes};
   improved_ = score > state_.best;
   if (improved_) state_.best = score;
@@ -175,6 +176,7 @@ CurveRow Trainer::MakeRow(const UpdateStats& stats, double learning_rate) const 
           stats.gradient_norm,
           difficulty.goal_angle,
           difficulty.velocity_tolerance,
+          difficulty.gravity_factor,
           static_cast<double>(difficulty.objects > 0 ? difficulty.objects : state_.table.objects()),
           stats.routing_entropy,
           stats.least_load,

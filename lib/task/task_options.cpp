@@ -66,6 +66,7 @@ void TaskOptions::RegisterDraws(Options& options) {
   options.Add("task.near_angle", &near_angle, "rad").Range(1e-3, 10);
   options.Add("task.velocity_tolerance", &velocity_tolerance, "factor on speed_max and spin_max")
       .Range(1e-3, 1e6);
+  options.Add("task.gravity_factor", &gravity_factor, "factor on gravity").Range(-10, 10);
   options.Add("task.mass_range", &mass_range, "kg: low,high");
   options.Add("task.friction_range", &friction_range, "hand-object coefficient: low,high");
   options.Add("task.torsion_range", &torsion_range,

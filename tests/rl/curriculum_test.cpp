@@ -58,6 +58,24 @@ TEST(Curriculum, MovesAngleAndVelocityInTurnUntilTheTask) {
   EXPECT_FALSE(curriculum.Update(100, Episodes({5}), state));
 }
 
+TEST(Curriculum, GravityRisesWithEveryAdvanceUntilTheTasks) {
+  PpoOptions options = Options();
+  options.gravity_start = -0.5;
+  options.gravity_step = 0.4;
+  options.curriculum_objects = 1;
+  const Curriculum curriculum(options, {1.5, 2.5}, 2);  // one advance away, each
+  CurriculumState state = curriculum.Start();
+  EXPECT_EQ(state.difficulty.gravity_factor, -0.5);
+  for (const double gravity : {-0.1, 0.3, 0.7, 1.0}) {
+    EXPECT_EQ(state.difficulty.objects, 1);  // they wait for gravity as well
+    EXPECT_TRUE(curriculum.Update(100, Episodes({2}), state));
+    EXPECT_DOUBLE_EQ(state.difficulty.gravity_factor, gravity);
+  }
+  EXPECT_TRUE(curriculum.Update(100, Episodes({2}), state));
+  EXPECT_EQ(state.difficulty.objects, 2);
+  EXPECT_FALSE(curriculum.Update(100, Episodes({9}), state));
+}
+
 TEST(Curriculum, WaitsForThePeriodAndJudgesAllEpisodesInIt) {
   const Curriculum curriculum(Options(), {3.2, 1});
   CurriculumState state = curriculum.Start();

@@ -65,7 +65,7 @@ TEST(RunFiles, AHarderTaskOutranksMoreSuccessesOnceItsEpisodesFillTheWindow) {
   int iterations = 0, moves = 0;  // at the present difficulty; that were seen to set a new best
   for (int i = 0; i < 20; ++i) {
     const TaskDifficulty now = run.trainer.state().curriculum.difficulty;
-    const double present = now.goal_angle / now.velocity_tolerance;
+    const double present = now.goal_angle / now.velocity_tolerance + now.gravity_factor;
     iterations = present == before ? iterations + 1 : 1;
     before = present;
     run.Iterate(1);
@@ -100,8 +100,8 @@ TEST(RunFiles, SnapshotsAreTheFirstStatesPastEveryMultipleAndResumedRunsAddNoOth
     names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   // 1920 samples an iteration: the multiples of 5000 are passed in the third, sixth and eighth.
-  EXPECT_EQ(names, (std::vector<std::string>{"000000005760.h5", "000000011520.h5",
-                                             "000000015360.h5"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"000000005760.h5", "000000011520.h5", "000000015360.h5"}));
   EXPECT_EQ(ReadCheckpoint(folder / "run.snapshots/000000011520.h5").curve.size(), 6u);
 }
 

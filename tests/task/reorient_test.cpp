@@ -303,6 +303,16 @@ TEST(Batch, RefusesGraspsOfAnotherHandOrSize) {
   EXPECT_THROW(FakeTask{options}, UsageError);
 }
 
+TEST(Batch, GravityFactorActsOnTheEpisodesToCome) {
+  FakeTask task(TaskOptions{});
+  const double whole = task.batch->physics(0).gravity.z();
+  ASSERT_GT(whole, 0);
+  task.batch->mutable_options().gravity_factor = -0.25;
+  EXPECT_EQ(task.batch->physics(0).gravity.z(), whole);
+  task.batch->Reset(0, 0, 7);
+  EXPECT_DOUBLE_EQ(task.batch->physics(0).gravity.z(), -0.25 * whole);
+}
+
 class Wobble {
  public:
   void operator()(int env, EnvState& s) const {
