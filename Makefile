@@ -38,6 +38,7 @@ include mk/build.mk
 include mk/test.mk
 include mk/debian.mk
 include mk/bench.mk
+include mk/settings.mk
 include mk/experiment.mk
 include mk/baselines.mk
 include mk/ablations.mk

@@ -31,20 +31,20 @@ experts_of = $(foreach i,$(shell seq $(1)),$(OUT)/ablation/expert_$(1)_$(i).h5)
 define ablation_rules
 $(call groups_of,$(1)) &: $(OUT)/objects.mk | $(BIN)/group_objects
 	$(BIN)/group_objects --objects=$(OUT)/objects.csv --groups=$(1) --out=$(OUT)/ablation/objects_$(1)_
-$(call experts_of,$(1)): $(OUT)/ablation/expert_%.h5: $(OUT)/base.h5 $(OUT)/ablation/objects_%.csv | $(BIN)/train_expert
+$(call experts_of,$(1)): $(OUT)/ablation/expert_%.h5: $(OUT)/base.h5 $(OUT)/ablation/objects_%.csv $(call settings,train_expert) | $(BIN)/train_expert
 	$$(call train,train_expert --base=$$< --share=$(share_$(1)),$(OUT)/ablation/objects_$$*.csv)
-$(OUT)/experts_$(1).h5: $(call experts_of,$(1)) | $(BIN)/train_gate
+$(OUT)/experts_$(1).h5: $(call experts_of,$(1)) $(call settings,train_gate) | $(BIN)/train_gate
 	$$(call train,train_gate --experts=$$(call commas,$(call experts_of,$(1))))
 endef
 
 ifndef EXISTING
 $(foreach n,$(EXPERT_NUMBERS),$(eval $(call ablation_rules,$(n))))
-$(GATE_INPUTS:%=$(OUT)/input_%.h5): $(OUT)/input_%.h5: $(EXPERT_FILES) | $(BIN)/train_gate
+$(GATE_INPUTS:%=$(OUT)/input_%.h5): $(OUT)/input_%.h5: $(EXPERT_FILES) $(call settings,train_gate) | $(BIN)/train_gate
 	$(call train,train_gate --experts=$(call commas,$(EXPERT_FILES)) --policy.gate_input=$*)
 endif
 
 VARIANT_FILES := $(VARIANTS:%=$(OUT)/eval/%.h5)
-$(call evaluable,$(VARIANT_FILES)): $(OUT)/eval/%.h5: $(OUT)/%.h5 | $(EVALUATE)
+$(call evaluable,$(VARIANT_FILES)): $(OUT)/eval/%.h5: $(OUT)/%.h5 $(CHECKED_BY) | $(EVALUATE)
 	@mkdir -p $(@D)
 	$(BIN)/evaluate $(COMMON) --sim.engine=$(CHECK) $(RUNS) --policy=$< --objects=$(OUT)/objects.csv --split=all \
 	  --out=$@ >$(@:.h5=.txt)

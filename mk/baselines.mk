@@ -14,7 +14,7 @@ FROM_BASE := res base_long
 from_base = $(if $(filter $(1),$(FROM_BASE)),--base=$(OUT)/base.h5)
 ifndef EXISTING
 $(FROM_BASE:%=$(OUT)/baseline_%.h5): $(OUT)/base.h5
-$(BASELINES:%=$(OUT)/baseline_%.h5): $(OUT)/baseline_%.h5: $(READY) | $(BIN)/train_baseline
+$(BASELINES:%=$(OUT)/baseline_%.h5): $(OUT)/baseline_%.h5: $(READY) $(call settings,learning train_baseline) | $(BIN)/train_baseline
 	$(call train,train_baseline --method=$* $(call from_base,$*))
 endif
 

@@ -1,8 +1,8 @@
 # The experiment: from meshes to tables, figures and films. `make quick` runs all of it at small size.
 #
 # A run lives in $(OUT); what it makes of its objects in data/objects/$(RUN)/NAME/. Stages depend on
-# their inputs and their configuration file; tools are order-only, so that a rebuilt tool never
-# discards a training. settings.txt holds the variables of the run and changes only when they do.
+# their inputs and on the settings that they read (mk/settings.mk); tools are order-only, so that a
+# rebuilt tool never discards a training.
 
 RUN    := $(notdir $(OUT))
 BIN    := $(BUILD)/bin
@@ -65,20 +65,13 @@ evaluated  = $(if $(EXISTING),$(foreach f,$(1),$(if $(wildcard $(f) $(call polic
 # $(1): checkpoints; $(2): other files of their trainings, where they are what is used
 trained_in = $(if $(EXISTING),$(wildcard $(or $(2),$(1))),$(1))
 
-# Rewritten only when a variable changed, so that what depends on it is remade exactly then.
-$(OUT)/settings.txt: FORCE
-	@mkdir -p $(@D)
-	@printf '%s\n' 'OBJECTS=$(OBJECTS)' 'ENGINE=$(ENGINE)' 'CHECK=$(CHECK)' 'HAND=$(HAND)' 'SEED=$(SEED)' 'CONFIG=$(CONFIG)' >$@.tmp
-	@if cmp -s $@.tmp $@; then rm $@.tmp; else mv $@.tmp $@; fi
-FORCE:
-
 # --- Objects ------------------------------------------------------------------------------------
 
 meshes/builtin/manifest.csv: $(wildcard data/recipes/*/* data/recipes/*.*) | $(BIN)/make_objects
 	$(BIN)/make_objects --out=$(@D)
 
 # objects.mk names the objects of the run; make reads it once it is there (see the include below).
-$(OUT)/objects.mk: $(OUT)/settings.txt $(CONFIG) \
+$(OUT)/objects.mk: $(call settings,run objects) \
     $(if $(filter builtin,$(OBJECTS)),meshes/builtin/manifest.csv) | $(BIN)/list_objects
 	$(BIN)/list_objects $(COMMON) --meshes=$(MESHES) --folder=$(OBJDIR) --makefile=$@ \
 	  --out=$(OUT)/objects.csv
@@ -89,7 +82,7 @@ endif
 OBJECT_FILES = $(foreach name,$(OBJECT_NAMES),$(OBJDIR)/$(name)/$(1).h5)
 
 define object_rules
-$(OBJDIR)/$(1)/mesh.h5: $(MESH_$(1)) $(CONFIG) | $(BIN)/scale_mesh
+$(OBJDIR)/$(1)/mesh.h5: $(MESH_$(1)) $(call settings,objects) | $(BIN)/scale_mesh
 	@mkdir -p $$(@D)
 	$(BIN)/scale_mesh $(CONFIG:%=--config=%) --mesh=$$< --name=$(1) --category=$(CATEGORY_$(1)) --out=$$@ >$$(@D)/scale.log
 endef
@@ -102,7 +95,7 @@ data/objects/%/cloud.h5: data/objects/%/mesh.h5 | $(BIN)/sample_cloud
 	$(BIN)/sample_cloud $(COMMON) --mesh=$< --out=$@ >$(@D)/cloud.log
 data/objects/%/shape.h5: data/objects/%/cloud.h5 $(OUT)/shape_net.h5 | $(BIN)/describe_shape
 	$(BIN)/describe_shape --net=$(OUT)/shape_net.h5 --cloud=$< --out=$@ >$(@D)/shape.log
-data/objects/%/grasps.h5: data/objects/%/parts.h5 $(OUT)/settings.txt | $(BIN)/find_grasps
+data/objects/%/grasps.h5: data/objects/%/parts.h5 $(call settings,run) | $(BIN)/find_grasps
 	$(BIN)/find_grasps $(COMMON) $(SIM) --mesh=$(@D)/mesh.h5 --parts=$< --out=$@ | tee $(@D)/grasps.log
 
 ifndef EXISTING
@@ -136,11 +129,11 @@ expert_categories_animal := animal
 EXPERT_FILES := $(EXPERTS:%=$(OUT)/expert_%.h5)
 
 ifndef EXISTING
-$(OUT)/base.h5: $(READY) | $(BIN)/train_base
+$(OUT)/base.h5: $(READY) $(call settings,learning train_base) | $(BIN)/train_base
 	$(call train,train_base)
-$(EXPERT_FILES): $(OUT)/expert_%.h5: $(OUT)/base.h5 | $(BIN)/train_expert
+$(EXPERT_FILES): $(OUT)/expert_%.h5: $(OUT)/base.h5 $(call settings,train_expert) | $(BIN)/train_expert
 	$(call train,train_expert --base=$< --categories=$(expert_categories_$*))
-$(OUT)/gate.h5: $(EXPERT_FILES) | $(BIN)/train_gate
+$(OUT)/gate.h5: $(EXPERT_FILES) $(call settings,train_gate) | $(BIN)/train_gate
 	$(call train,train_gate --experts=$(call commas,$(EXPERT_FILES)))
 
 trained: $(OUT)/gate.h5
@@ -175,8 +168,9 @@ EVAL_FILES := $(METHODS:%=$(OUT)/eval/%.h5)
 # The objects come with the trainings; where there are none they are asked for.
 OBJECTS_READY := $(if $(EXISTING),$(READY))
 EVALUATE := $(BIN)/evaluate $(OBJECTS_READY)
+CHECKED_BY := $(call settings,check eval)
 
-$(call evaluable,$(EVAL_FILES)): $(OUT)/eval/%.h5: $(OUT)/%.h5 | $(EVALUATE)
+$(call evaluable,$(EVAL_FILES)): $(OUT)/eval/%.h5: $(OUT)/%.h5 $(CHECKED_BY) | $(EVALUATE)
 	@mkdir -p $(@D)
 	$(BIN)/evaluate $(COMMON) --sim.engine=$(CHECK) $(RUNS) --policy=$< --objects=$(OUT)/objects.csv --split=all --out=$@ \
 	  --trace=$(OUT)/trace/$*.h5 >$(OUT)/eval/$*.txt
@@ -189,7 +183,7 @@ $(OUT)/tables/table1.md: $(call evaluated,$(EVAL_FILES)) data/paper_tables.csv |
 # finds every category.
 UNLABELLED := predicted soft
 UNLABELLED_FILES := $(UNLABELLED:%=$(OUT)/eval/gate_%.h5)
-$(call evaluable,$(UNLABELLED_FILES)): $(OUT)/eval/gate_%.h5: $(OUT)/gate.h5 | $(EVALUATE)
+$(call evaluable,$(UNLABELLED_FILES)): $(OUT)/eval/gate_%.h5: $(OUT)/gate.h5 $(CHECKED_BY) | $(EVALUATE)
 	@mkdir -p $(@D)
 	$(BIN)/evaluate $(COMMON) --sim.engine=$(CHECK) $(RUNS) --eval.category=$* --policy=$< \
 	  --objects=$(OUT)/objects.csv --split=all --out=$@ >$(@:.h5=.txt)
@@ -205,7 +199,7 @@ check_lanes  := --sim.engine=lanes
 check_ode    := --sim.engine=ode
 check_mujoco := --sim.engine=mujoco --sim.substeps=16
 CHECK_FILES := $(CHECKED:%=$(OUT)/eval/%.h5)
-$(CHECK_FILES): $(OUT)/eval/%.h5: $(OUT)/base.h5 | $(BIN)/evaluate
+$(CHECK_FILES): $(OUT)/eval/%.h5: $(OUT)/base.h5 $(call settings,eval) | $(BIN)/evaluate
 	@mkdir -p $(@D)
 	$(BIN)/evaluate $(COMMON) $(RUNS) $(check) $(check_$*) --policy=$< \
 	  --objects=$(OUT)/objects.csv --out=$@ >$(@:.h5=.txt)
@@ -213,7 +207,7 @@ $(CHECK_FILES): $(OUT)/eval/%.h5: $(OUT)/base.h5 | $(BIN)/evaluate
 # The least that a policy has to beat.
 CONTROLS := $(OUT)/eval/hold.h5 $(OUT)/eval/start.h5
 $(OUT)/eval/start.h5: $(OUT)/untrained.h5
-$(CONTROLS): $(OUT)/eval/%.h5: $(READY) | $(BIN)/evaluate
+$(CONTROLS): $(OUT)/eval/%.h5: $(READY) $(call settings,eval) | $(BIN)/evaluate
 	@mkdir -p $(@D)
 	$(BIN)/evaluate $(COMMON) $(RUNS) $(check) $(check_lanes) --policy=$(if $(filter hold,$*),hold,$(OUT)/untrained.h5) \
 	  --objects=$(OUT)/objects.csv --out=$@ >$(@:.h5=.txt)
@@ -221,7 +215,7 @@ $(OUT)/tables/learned.md: $(CONTROLS) $(CHECK_FILES) | $(BIN)/tabulate
 	$(BIN)/tabulate --engines --eval=$(call commas,$^) --out=$(basename $@) \
 	  --labels="Open-loop hold,Untrained,$(call commas,$(CHECKED:%=Base:%))"
 
-$(OUT)/tsne.h5: $(OUT)/gate.h5 $(OUT)/shape_net.h5 | $(BIN)/embed_gate $(OBJECTS_READY)
+$(OUT)/tsne.h5: $(OUT)/gate.h5 $(OUT)/shape_net.h5 $(call settings,embed_gate) | $(BIN)/embed_gate $(OBJECTS_READY)
 	$(BIN)/embed_gate $(COMMON) --workers=$(WORKERS) --gate=$< --net=$(OUT)/shape_net.h5 \
 	  --objects=$(OUT)/objects.csv --out=$@
 
@@ -237,7 +231,7 @@ $(OUT)/figures/base.png: $(OUT)/base.h5 | $(BIN)/plot
 # stand in the same order.
 grown = $(foreach r,$(1),$(sort $(wildcard results/$(r)/eval/growth/*.h5)))
 grown_labels = $(foreach r,$(1),$(patsubst %,$(r),$(wildcard results/$(r)/eval/growth/*.h5)))
-$(OUT)/eval/growth/done: $(OUT)/base.h5 | $(BIN)/evaluate
+$(OUT)/eval/growth/done: $(OUT)/base.h5 $(call settings,eval) | $(BIN)/evaluate
 	@mkdir -p $(@D)
 	for policy in $(OUT)/snapshots/base/*.h5; do \
 	  $(BIN)/evaluate $(COMMON) $(RUNS) $(check) $(check_lanes) --policy=$$policy \
@@ -254,7 +248,7 @@ $(OUT)/figures/tsne.png: $(OUT)/tsne.h5 | $(BIN)/plot
 	$(BIN)/plot --kind=tsne --in=$< --out=$(basename $@)
 $(OUT)/figures/objects.png: $(OUT)/objects.mk $(call OBJECT_FILES,mesh) | $(BIN)/render
 	$(BIN)/render --kind=objects --objects=$(OUT)/objects.csv --out=$@
-$(OUT)/dataset.csv: $(OUT)/settings.txt $(CONFIG) \
+$(OUT)/dataset.csv: $(call settings,run objects) \
     $(if $(filter builtin,$(OBJECTS)),meshes/builtin/manifest.csv) | $(BIN)/list_objects
 	$(BIN)/list_objects $(COMMON) --per_category=0 --meshes=$(MESHES) --folder=$(OBJDIR) --out=$@
 $(OUT)/figures/dataset.png: $(OUT)/dataset.csv | $(BIN)/render
@@ -263,9 +257,9 @@ $(OUT)/figures/parts.png: $(OUT)/objects.mk $(call OBJECT_FILES,parts) | $(BIN)/
 	$(BIN)/render --kind=parts --objects=$(OUT)/objects.csv --out=$@
 $(OUT)/gallery/index.txt: $(OUT)/objects.mk $(call OBJECT_FILES,parts) $(call OBJECT_FILES,cloud) | $(BIN)/render
 	$(BIN)/render --kind=gallery --objects=$(OUT)/objects.csv --out=$(@D)
-$(OUT)/figures/hand.png: $(HAND) $(OUT)/settings.txt | $(BIN)/render
+$(OUT)/figures/hand.png: $(HAND) $(call settings,run) | $(BIN)/render
 	$(BIN)/render --kind=hand --hand=$(HAND) --out=$@
-$(OUT)/figures/hand_parts.png: $(HAND) $(OUT)/settings.txt | $(BIN)/render
+$(OUT)/figures/hand_parts.png: $(HAND) $(call settings,run) | $(BIN)/render
 	$(BIN)/render --kind=hand_parts --hand=$(HAND) --out=$@
 $(OUT)/figures/strip.png: $(OUT)/eval/gate.h5 | $(BIN)/render
 	$(BIN)/render --kind=strip --hand=$(HAND) --trace=$(OUT)/trace/gate.h5 --objects=$(OUT)/objects.csv --out=$@

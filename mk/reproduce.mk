@@ -13,9 +13,9 @@ pretrained: deps  ## strip the policies of the run OUT to weights, for make repr
 	@[ -f $(OUT)/gate.h5 ] || { echo '$(OUT)/gate.h5 is not there: train first (make quick ablations SCALE=$(SCALE))' >&2; exit 1; }
 	+@$(MAKE) $(JOBS) --no-print-directory $(BIN)/export_weights
 	@rm -rf $(PRETRAINED).tmp && mkdir -p $(PRETRAINED).tmp/curves
-	@cp $(OUT)/settings.txt $(PRETRAINED).tmp/ && cp $(SHIPPED_CURVES) $(PRETRAINED).tmp/curves/
+	@cp $(call settings,run) $(PRETRAINED).tmp/settings.txt && cp $(SHIPPED_CURVES) $(PRETRAINED).tmp/curves/
 	@echo 'file,method,samples,seed,sha256' >$(PRETRAINED).tmp/manifest.csv
-	@seed=$$(sed -n 's/^SEED=//p' $(OUT)/settings.txt); \
+	@seed=$$(sed -n 's/^SEED=//p' $(call settings,run)); \
 	for file in $(notdir $(SHIPPED)); do weights=$(PRETRAINED).tmp/$$file; \
 	  if [ $$file = shape_net.h5 ]; then cp $(OUT)/$$file $$weights; about=shape_net,,$$seed; \
 	  else about=$$($(BIN)/export_weights --policy=$(OUT)/$$file --out=$$weights); fi; \
@@ -31,7 +31,7 @@ shipped:
 	@tail -n +2 $(PRETRAINED)/manifest.csv | sed -E 's|^([^,]*),.*,([^,]*)$$|\2  $(PRETRAINED)/\1|' | sha256sum --check --quiet
 
 # The settings that the weights were trained with; how they are checked is up to who calls.
-RECORDED = $(shell grep -v '^CHECK=' $(PRETRAINED)/settings.txt | sed "s/.*/'&'/")
+RECORDED = $(shell sed "s/.*/'&'/" $(PRETRAINED)/settings.txt)
 
 .PHONY: reproduce reproduced
 reproduce: shipped deps  ## evaluate the shipped weights; all tables, figures and films of them, nothing trained

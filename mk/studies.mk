@@ -37,12 +37,10 @@ STUDY   := $(OUT)/eval/studies
 study = mkdir -p $(@D) && $(BIN)/evaluate $(COMMON) $(RUNS) $(check) $(check_lanes) \
   --eval.episodes=$(STUDY_EPISODES) --policy=$(1) --objects=$(2) $(3) --out=$@ >$(@:.h5=.txt)
 
-# Rewritten only when they change, so that what was made with other ones is remade. $(1): text
-remember = mkdir -p $(@D) && printf '%s\n' '$(1)' >$@.tmp && if cmp -s $@.tmp $@; then rm $@.tmp; else mv $@.tmp $@; fi
 $(STUDY)/episodes.txt: FORCE
-	@$(call remember,$(STUDY_EPISODES))
+	@$(call remember,echo '$(STUDY_EPISODES)')
 $(STUDY)/methods.txt: FORCE
-	@$(call remember,$(SHOWN); $(PUSHES); $(SIZES))
+	@$(call remember,echo '$(SHOWN); $(PUSHES); $(SIZES)')
 in = $(call commas,$(ABSENT) $(filter %.h5,$^))
 # Success of all methods against a quantity. $(1): its name and unit, $(2): its values
 plot_study = $(BIN)/plot --kind=study --x="$(1)" --missing --in=$(in) \
@@ -52,7 +50,7 @@ plot_study = $(BIN)/plot --kind=study --x="$(1)" --missing --in=$(in) \
 # --- Objects ------------------------------------------------------------------------------------
 
 # The five best and worst of the base policy. The same episodes as in the table, and a recorded one of each.
-$(STUDY)/base.h5: $(OUT)/base.h5 | $(BIN)/evaluate
+$(STUDY)/base.h5: $(OUT)/base.h5 $(CHECKED_BY) | $(BIN)/evaluate
 	@mkdir -p $(@D) $(OUT)/trace
 	$(BIN)/evaluate $(COMMON) --sim.engine=$(CHECK) $(RUNS) --eval.tolerances=0.4 --policy=$< --objects=$(OUT)/objects.csv \
 	  --split=all --out=$@ --trace=$(OUT)/trace/typical.h5 --trace_choice=typical --trace_episodes=1000 >$(@:.h5=.txt)
@@ -87,13 +85,13 @@ $(OUT)/figures/push.png: $(STUDY)/methods.txt $(PUSHED) | $(BIN)/plot
 SIZED := data/objects/$(RUN)-size
 SIZED_OBJECTS := $(foreach s,$(SIZES),$(OBJECT_NAMES:%=$(SIZED)/$(s)/%))
 define size_rule
-$(SIZED)/$(1)/$(2)/mesh.h5: $(MESH_$(2)) $(CONFIG) | $(BIN)/scale_mesh
+$(SIZED)/$(1)/$(2)/mesh.h5: $(MESH_$(2)) $(call settings,objects) | $(BIN)/scale_mesh
 	@mkdir -p $$(@D)
 	$(BIN)/scale_mesh $(CONFIG:%=--config=%) --scale.scale=$(1) --mesh=$$< --name=$(2) --category=$(CATEGORY_$(2)) --out=$$@ >$$(@D)/scale.log
 endef
 $(foreach s,$(SIZES),$(foreach name,$(OBJECT_NAMES),$(eval $(call size_rule,$(s),$(name)))))
 
-$(SIZED_OBJECTS:%=%/grasps.log): %/grasps.log: %/parts.h5 $(OUT)/settings.txt | $(BIN)/find_grasps
+$(SIZED_OBJECTS:%=%/grasps.log): %/grasps.log: %/parts.h5 $(call settings,run) | $(BIN)/find_grasps
 	@rm -f $*/grasps.h5
 	$(BIN)/find_grasps $(COMMON) $(SIM) --grasp.count=$(STUDY_STARTS) --mesh=$*/mesh.h5 --parts=$< --out=$*/grasps.h5 >$@.tmp 2>&1 || \
 	  grep -q 'no grasp found' $@.tmp || { cat $@.tmp; exit 1; }

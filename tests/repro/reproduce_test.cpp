@@ -1,14 +1,13 @@
 // What `make tables`, `figures` and `reproduce` do, read from what make would run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
+
+#include "run_make.h"
 
 namespace dexremoe {
 namespace {
@@ -16,23 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
-
-struct Outcome {
-  int code = -1;
-  std::string text;  // stdout and stderr
-};
-
-// make without the variables of a make that runs the tests.
-Outcome Make(const std::string& words) {
-  const std::string line = "env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL make " + words + " 2>&1";
-  std::FILE* pipe = popen(line.c_str(), "r");
-  Outcome outcome;
-  std::array<char, 4096> buffer;
-  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) outcome.text += buffer.data();
-  const int status = pclose(pipe);
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
 
 // A run of which only the base policy and the shape network are there.
 class Reproduce : public testing::Test {
@@ -50,9 +32,8 @@ class Reproduce : public testing::Test {
   // The commands that make would run for `target`.
   std::string Commands(const std::string& target, const std::string& words) const {
     const std::string run = folder_.string();
-    const Outcome outcome =
-        Make("-n --no-print-directory EXPERIMENT=1 OBJECTS=" + run + "/meshes OUT=" + run +
-             "/run " + words + " " + target);
+    const Outcome outcome = Make("-n --no-print-directory EXPERIMENT=1 OBJECTS=" + run +
+                                 "/meshes OUT=" + run + "/run " + words + " " + target);
     EXPECT_EQ(outcome.code, 0) << outcome.text;
     return outcome.text;
   }
