@@ -13,7 +13,7 @@ RUNS   := --hand=$(HAND) --workers=$(WORKERS)
 SIM    := --sim.engine=$(ENGINE) $(RUNS)
 
 .PHONY: quick
-quick: deps  ## meshes to tables, figures and films at small size (about 15 minutes)
+quick: deps  ## meshes to tables, figures and films at small size (about ten minutes)
 	+@$(MAKE) $(JOBS) --no-print-directory build
 	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 experiment
 	@printf '\nDone. Look at:\n'; printf '  %s\n' $(PRODUCTS)
