@@ -162,7 +162,7 @@ void ReorientBatch::Restore(const std::vector<std::uint8_t>& bytes) {
     for (double* number :
          {&p.mass, &p.com[0], &p.com[1], &p.com[2], &p.friction, &p.torsional_friction, &p.scale})
       in.GetInto(*number);
-    p.gravity = {0, 0, impl_->gravity};
+    p.gravity = {0, 0, impl_->state.gravity[env]};
     if (impl_->options.random.on) impl_->RestoreRandom(env);
     impl_->sim->Restore(env, in.GetVector<std::uint8_t>());
   }

@@ -63,6 +63,7 @@ struct TaskOptions {
   double near_angle = 1.2;        // rad
   double velocity_tolerance = 1;  // factor on speed_max and spin_max (a curriculum)
   // Factor on gravity in episodes to come (a curriculum); below 0 objects fall into the palm.
+  // NOTE(paper): not there.
   double gravity_factor = 1;
   // Episodes to come draw on the first so many objects, interleaved; 0: an environment keeps its
   // object (a curriculum).

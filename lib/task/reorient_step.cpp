@@ -54,8 +54,9 @@ void ReorientBatch::Impl::Reset(int env, int object, std::uint64_t episode) {
   internal::TaskState& s = state;
   s.object[env] = object;
   s.episode[env] = episode;
-  internal::EpisodeStart start = internal::DrawStart(
-      options, objects[object], options.gravity_factor * gravity, seed, KeyOf(env));
+  s.gravity[env] = options.gravity_factor * gravity;
+  internal::EpisodeStart start =
+      internal::DrawStart(options, objects[object], s.gravity[env], seed, KeyOf(env));
   if (options.random.on) StartRandom(env, start.physics);
   const Grasp& grasp = objects[object].grasps[start.grasp];
   physics[env] = start.physics;

@@ -12,7 +12,7 @@ void ForEachArray(State& s, Visit&& visit) {
   visit(s.held), visit(s.waited), visit(s.episode), visit(s.live);
   visit(s.total_reward), visit(s.total_angle), visit(s.total_distance);
   visit(s.average), visit(s.target), visit(s.q), visit(s.qd), visit(s.position), visit(s.rotation);
-  visit(s.goal), visit(s.angle), visit(s.distance), visit(s.obs), visit(s.phys);
+  visit(s.goal), visit(s.angle), visit(s.distance), visit(s.gravity), visit(s.obs), visit(s.phys);
   if (!s.random.empty()) visit(s.random), visit(s.last_action), visit(s.force);
 }
 
@@ -40,7 +40,7 @@ void TaskState::Resize(int num_envs, int joints, int phys_size) {
     counts->assign(n, 0);
   episode.assign(n, 0);
   live.assign(n, 1);
-  for (auto* sums : {&total_reward, &total_angle, &total_distance, &angle, &distance})
+  for (auto* sums : {&total_reward, &total_angle, &total_distance, &angle, &distance, &gravity})
     sums->assign(n, 0.0);
   for (auto* rows : {&average, &target, &q, &qd}) rows->assign(n * j, 0.0);
   position.assign(n * 3, 0.0);

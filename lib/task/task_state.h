@@ -29,6 +29,7 @@ namespace dexremoe::internal {
 // | goal              | [N,4]  | w x y z | q_WG                                                 |
 // | angle, distance   | [N]    | rad, m  | to the goal, from the grasp centre                   |
 // | obs, phys         | [N,..] |         | observations; obs rows are the history themselves    |
+// | gravity           | [N]    | m/s^2   | of the episode along z, before randomisation         |
 // | random            | [N,P]  |         | values drawn for the episode (kRandomParameters)     |
 // | last_action       | [N,J]  | 1       | of the decision before, as executed                  |
 // | force             | [N,3]  | N, W    | random force on the object                           |
@@ -39,7 +40,7 @@ struct TaskState {
   std::vector<double> total_reward, total_angle, total_distance;
   std::vector<double> average, target, q, qd, position, rotation;
   std::vector<std::array<double, 4>> goal;
-  std::vector<double> angle, distance;
+  std::vector<double> angle, distance, gravity;
   std::vector<float> obs, phys;
   std::vector<double> random, last_action, force;  // with randomisation alone
 

@@ -20,28 +20,14 @@ const std::vector<std::string> kModules = {"base", "io",   "geometry", "nn", "sh
                                            "sim",  "task", "policy",   "rl", "eval",  "render"};
 
 // Third-party header prefixes and the one folder of lib/ that may include them.
-const std::map<std::string, std::string> kOwners = {{"CLI/", "base"},
-                                                    {"toml++/", "base"},
-                                                    {"spdlog/spdlog.h", "base"},
-                                                    {"spdlog/sinks", "base"},
-                                                    {"hdf5", "io"},
-                                                    {"png.h", "io"},
-                                                    {"xxhash.h", "io"},
-                                                    {"assimp/", "geometry"},
-                                                    {"libqhull", "geometry"},
-                                                    {"dnnl", "nn"},
-                                                    {"oneapi/dnnl", "nn"},
-                                                    {"pcl/", "shape"},
-                                                    {"urdf", "hand"},
-                                                    {"console_bridge/", "hand"},
-                                                    {"ode/", "sim/ode"},
-                                                    {"ccd/", "sim/ode"},
-                                                    {"mujoco/", "sim/mujoco"},
-                                                    {"hwy/", "sim/lanes"},
-                                                    {"mpi.h", "rl"},
-                                                    {"GL/", "render"},
-                                                    {"ft2build.h", "render"},
-                                                    {"freetype/", "render"}};
+const std::map<std::string, std::string> kOwners = {
+    {"CLI/", "base"},      {"toml++/", "base"},    {"spdlog/spdlog.h", "base"},
+    {"spdlog/sinks", "base"}, {"hdf5", "io"},      {"png.h", "io"},
+    {"xxhash.h", "io"},    {"assimp/", "geometry"}, {"libqhull", "geometry"},
+    {"dnnl", "nn"},        {"oneapi/dnnl", "nn"},  {"pcl/", "shape"},
+    {"urdf", "hand"},       {"console_bridge/", "hand"},      {"ode/", "sim/ode"},    {"ccd/", "sim/ode"},
+    {"mujoco/", "sim/mujoco"}, {"hwy/", "sim/lanes"},
+    {"mpi.h", "rl"},       {"GL/", "render"},     {"ft2build.h", "render"}, {"freetype/", "render"}};
 
 std::vector<fs::path> Sources(const std::string& folder) {
   std::vector<fs::path> files;

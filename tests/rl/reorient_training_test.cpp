@@ -31,6 +31,11 @@ PpoOptions SmallPpo() {
   ppo.horizon = 12;
   ppo.minibatch = 36;
   ppo.block_rows = 16;
+  ppo.curriculum = true;  // advances after every iteration, so that episodes differ in gravity
+  ppo.curriculum_threshold = -1;
+  ppo.curriculum_period = 1;
+  ppo.gravity_start = -0.5;
+  ppo.gravity_step = 0.2;
   return ppo;
 }
 

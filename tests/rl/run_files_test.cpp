@@ -100,8 +100,8 @@ TEST(RunFiles, SnapshotsAreTheFirstStatesPastEveryMultipleAndResumedRunsAddNoOth
     names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   // 1920 samples an iteration: the multiples of 5000 are passed in the third, sixth and eighth.
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"000000005760.h5", "000000011520.h5", "000000015360.h5"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"000000005760.h5", "000000011520.h5",
+                                             "000000015360.h5"}));
   EXPECT_EQ(ReadCheckpoint(folder / "run.snapshots/000000011520.h5").curve.size(), 6u);
 }
 

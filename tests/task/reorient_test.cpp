@@ -329,8 +329,10 @@ TEST(Batch, ARestoredBatchContinuesBitForBit) {
   options.velocity_tolerance = 100;
   FakeTask one(options), two(options, 4, 1);
   one.sim->script = two.sim->script = Wobble();
+  one.batch->mutable_options().gravity_factor = 0.5;  // of the episodes that run when it is saved
   for (int k = 0; k < 30; ++k) one.Step(0.3f, -0.2f);
   one.batch->mutable_options().goal_angle = 1.0;
+  one.batch->mutable_options().gravity_factor = 0.75;  // of those to come
   const auto image = one.batch->Save();
   two.batch->Restore(image);
   EXPECT_EQ(two.batch->Save(), image);
@@ -342,6 +344,8 @@ TEST(Batch, ARestoredBatchContinuesBitForBit) {
     EXPECT_EQ(a.last_phys, b.last_phys);
     EXPECT_EQ(one.batch->obs(), two.batch->obs());
     EXPECT_EQ(one.batch->phys(), two.batch->phys());
+    for (int env = 0; env < 4; ++env)
+      EXPECT_EQ(one.batch->physics(env).gravity, two.batch->physics(env).gravity);
   }
   EXPECT_EQ(one.batch->Save(), two.batch->Save());
   EXPECT_GT(one.batch->TakeRecords().size(), 4u);
