@@ -16,7 +16,23 @@ CurriculumState Curriculum::Start() const {
   state.difficulty.velocity_tolerance = std::max(options_.velocity_start, task_.velocity_tolerance);
   state.difficulty.gravity_factor = std::min(options_.gravity_start, task_.gravity_factor);
   state.difficulty.objects = std::min(options_.curriculum_objects, objects_);
+  Complete(state.difficulty);
   return state;
+}
+
+bool Curriculum::AngleOpen(const TaskDifficulty& now) const {
+  return now.goal_angle < std::min(task_.goal_angle, std::numbers::pi);
+}
+
+bool Curriculum::VelocityOpen(const TaskDifficulty& now) const {
+  return now.velocity_tolerance > task_.velocity_tolerance;
+}
+
+// What goals and speeds are is in every checkpoint; this follows from it.
+void Curriculum::Complete(TaskDifficulty& now) const {
+  const bool open = options_.curriculum && (AngleOpen(now) || VelocityOpen(now));
+  now.near_share =
+      open && options_.near_share_start >= 0 ? options_.near_share_start : task_.near_share;
 }
 
 bool Curriculum::Update(std::int64_t samples, const std::vector<EpisodeRecord>& records,
@@ -39,8 +55,7 @@ bool Curriculum::Update(std::int64_t samples, const std::vector<EpisodeRecord>& 
 bool Curriculum::Advance(CurriculumState& state) const {
   TaskDifficulty& now = state.difficulty;
   const bool gravity_open = now.gravity_factor < task_.gravity_factor;
-  const bool angle_open = now.goal_angle < std::min(task_.goal_angle, std::numbers::pi);
-  const bool velocity_open = now.velocity_tolerance > task_.velocity_tolerance;
+  const bool angle_open = AngleOpen(now), velocity_open = VelocityOpen(now);
   now.gravity_factor = std::min(now.gravity_factor + options_.gravity_step, task_.gravity_factor);
   if (!angle_open && !velocity_open) {
     if (gravity_open) return true;
@@ -55,6 +70,7 @@ bool Curriculum::Advance(CurriculumState& state) const {
     now.velocity_tolerance =
         std::max(now.velocity_tolerance * options_.velocity_factor, task_.velocity_tolerance);
   state.angle_next = !move_angle;
+  Complete(now);
   return true;
 }
 

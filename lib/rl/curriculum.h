@@ -1,5 +1,6 @@
 // Goals come nearer, the speed rule is looser and objects weigh less at first; all move to the
-// paper's task as the policy succeeds. With options.curriculum_objects, more objects follow then.
+// paper's task as the policy succeeds. Then the goals are near no more often than the task says and,
+// with options.curriculum_objects, more objects follow.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +33,12 @@ class Curriculum {
   // Accounts for one iteration; returns true when the difficulty changed.
   bool Update(std::int64_t samples, const std::vector<EpisodeRecord>& records,
               CurriculumState& state) const;
+  // Sets near_share, which follows from goals and speeds and is in no checkpoint.
+  void Complete(TaskDifficulty& now) const;
 
  private:
+  bool AngleOpen(const TaskDifficulty& now) const;  // not the task's yet
+  bool VelocityOpen(const TaskDifficulty& now) const;
   bool Advance(CurriculumState& state) const;
   PpoOptions options_;
   TaskDifficulty task_;

@@ -14,6 +14,7 @@ struct TaskDifficulty {
   double velocity_tolerance = 1;  // factor on the speeds a success allows
   double gravity_factor = 1;      // of the episodes to come
   int objects = 0;                // the first of the list, in use; 0: all, from the start
+  double near_share = 0;          // of the goals
 };
 
 class VecEnv {

@@ -63,6 +63,8 @@ std::string CurriculumOf(const std::string& method, const PpoOptions& ppo) {
                        ppo.velocity_start);
   if (ppo.curriculum && ppo.gravity_start < 1)
     text += fmt::format(", gravity from {} of its strength", ppo.gravity_start);
+  if (ppo.curriculum && ppo.near_share_start > 0)
+    text += fmt::format(", {} of them near until both are the task's", ppo.near_share_start);
   if (ppo.curriculum && ppo.curriculum_objects > 0)
     text += fmt::format(", then objects from {} doubling", ppo.curriculum_objects);
   if (method == "dr") text += "; episodes randomised in fixed ranges";

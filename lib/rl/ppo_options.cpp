@@ -41,6 +41,10 @@ void PpoOptions::Register(Options& options) {
   options.Add("ppo.gravity_start", &gravity_start, "factor on gravity at first").Range(-10, 1);
   options.Add("ppo.gravity_step", &gravity_step, "rise of that factor at each advance")
       .Range(1e-6, 10);
+  options
+      .Add("ppo.near_share_start", &near_share_start,
+           "share of near goals until goals and speeds are the task's; -1: task.near_share")
+      .Range(-1, 1);
   options.Add("ppo.curriculum_threshold", &curriculum_threshold, "successes per episode to advance")
       .Range(0, 600);
   options.Add("ppo.curriculum_period", &curriculum_period, "samples between decisions")

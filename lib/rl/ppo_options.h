@@ -48,6 +48,8 @@ struct PpoOptions {
   double velocity_factor = 0.85;
   double gravity_start = 1;           // times gravity; below 0 objects fall into the palm at first
   double gravity_step = 0.05;         // rise of that factor with every advance
+  // Until goals and speeds are the task's; then task.near_share, which it is throughout below 0.
+  double near_share_start = -1;
   double curriculum_threshold = 1.5;  // successes per episode
   double curriculum_period = 5e5;     // samples between decisions
   // Objects to begin with; once goals and speeds are the task's they double with every advance. 0:

@@ -28,6 +28,7 @@ class ReorientEnv final : public VecEnv {
     batch_.mutable_options().velocity_tolerance = difficulty.velocity_tolerance;
     batch_.mutable_options().gravity_factor = difficulty.gravity_factor;
     batch_.mutable_options().objects_in_use = difficulty.objects;
+    batch_.mutable_options().near_share = difficulty.near_share;
   }
   void SetRandomRanges(const std::vector<double>& low, const std::vector<double>& high) override {
     for (int i = 0; i < kNumRandom; ++i)

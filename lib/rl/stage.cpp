@@ -190,7 +190,10 @@ TrainState RunStage(const StageOptions& stage, const Options& options, const Sta
   ReorientEnv env(batch);
   const StageStart start = {
       stage.ppo,
-      {stage.task.goal_angle, stage.task.velocity_tolerance, stage.task.gravity_factor},
+      {.goal_angle = stage.task.goal_angle,
+       .velocity_tolerance = stage.task.velocity_tolerance,
+       .gravity_factor = stage.task.gravity_factor,
+       .near_share = stage.task.near_share},
       MakeShapeTable(objects, FeatureSize(kind.cloud_points)),
       stage.seed};
   Trainer trainer(stage.ppo, start.task, FirstState(stage, options, kind, start, env, ranks), env,

@@ -67,6 +67,7 @@ Trainer::Trainer(const PpoOptions& options, const TaskDifficulty& task, TrainSta
     DEX_CHECK_EQ(static_cast<int>(state_.environment.size()), communicator.size());
     env_.Restore(state_.environment[communicator.rank()]);
   }
+  curriculum_.Complete(state_.curriculum.difficulty);
   env_.SetDifficulty(state_.curriculum.difficulty);
   if (adr_.on) {
     if (state_.adr.empty()) state_.adr = StartAdr();

@@ -20,7 +20,7 @@ void ForEachArray(State& s, Visit&& visit) {
 template <typename Opts, typename Number, typename List>
 void ForEachOption(Opts& o, Number&& number, List&& list) {
   number(o.tolerance), number(o.goal_angle), number(o.velocity_tolerance), number(o.hold_steps);
-  number(o.gravity_factor);
+  number(o.gravity_factor), number(o.near_share);
   number(o.c_progress), number(o.c_fall), number(o.c_jam);
   list(o.mass_range), list(o.friction_range), list(o.torsion_range), list(o.com_range);
 }

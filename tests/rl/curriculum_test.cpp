@@ -76,6 +76,40 @@ TEST(Curriculum, GravityRisesWithEveryAdvanceUntilTheTasks) {
   EXPECT_FALSE(curriculum.Update(100, Episodes({9}), state));
 }
 
+TEST(Curriculum, HalfOfTheGoalsAreNearUntilGoalsAndSpeedsAreTheTasks) {
+  PpoOptions options = Options();
+  options.near_share_start = 0.5;
+  const TaskDifficulty task = {.goal_angle = 1.5, .velocity_tolerance = 2.5, .near_share = 0.1};
+  const Curriculum curriculum(options, task);  // one advance away, each
+  CurriculumState state = curriculum.Start();
+  for (int moves = 0; moves < 2; ++moves) {
+    EXPECT_EQ(state.difficulty.near_share, 0.5);
+    ASSERT_TRUE(curriculum.Update(100, Episodes({2}), state));
+  }
+  EXPECT_EQ(state.difficulty.near_share, 0.1);
+}
+
+TEST(Curriculum, TheShareOfNearGoalsIsTheTasksUnlessAskedFor) {
+  for (const bool on : {false, true}) {
+    PpoOptions options = Options();
+    options.curriculum = on;
+    if (!on) options.near_share_start = 0.5;  // nothing without a curriculum
+    EXPECT_EQ(Curriculum(options, {.near_share = 0.2}).Start().difficulty.near_share, 0.2);
+  }
+}
+
+// A checkpoint has goals and speeds alone.
+TEST(Curriculum, CompletesADifficultyFromGoalsAndSpeeds) {
+  PpoOptions options = Options();
+  options.near_share_start = 0.5;
+  const Curriculum curriculum(options, {.goal_angle = 2, .near_share = 0.1});
+  TaskDifficulty on_the_way = {.goal_angle = 1.5}, arrived = {.goal_angle = 2};
+  curriculum.Complete(on_the_way);
+  curriculum.Complete(arrived);
+  EXPECT_EQ(on_the_way.near_share, 0.5);
+  EXPECT_EQ(arrived.near_share, 0.1);
+}
+
 TEST(Curriculum, WaitsForThePeriodAndJudgesAllEpisodesInIt) {
   const Curriculum curriculum(Options(), {3.2, 1});
   CurriculumState state = curriculum.Start();

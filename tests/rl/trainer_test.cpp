@@ -110,6 +110,7 @@ TEST(Trainer, ResumedRunEqualsTheUninterruptedOneByteForByte) {
   ppo.curriculum = true;
   ppo.curriculum_threshold = 0;
   ppo.curriculum_period = 3000;
+  ppo.near_share_start = 0.3;
   ToyRun whole(ToyBase(ppo), 2, ppo);
   whole.Iterate(6);
   WriteCheckpoint(folder / "whole.h5", whole.trainer.Snapshot(), ToyProvenance());
@@ -125,6 +126,7 @@ TEST(Trainer, ResumedRunEqualsTheUninterruptedOneByteForByte) {
   EXPECT_NE(ReadFile(folder / "whole.h5"), ReadFile(folder / "half.h5"));
   EXPECT_EQ(second.env.difficulty().goal_angle, whole.env.difficulty().goal_angle);
   EXPECT_GT(whole.env.difficulty().goal_angle, ppo.goal_angle_start);
+  EXPECT_EQ(second.env.difficulty().near_share, whole.env.difficulty().near_share);
 }
 
 TEST(Trainer, ExpertStageKeepsTheEncodersAndInputMoments) {

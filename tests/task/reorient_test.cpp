@@ -332,11 +332,13 @@ TEST(Batch, ARestoredBatchContinuesBitForBit) {
   one.batch->mutable_options().gravity_factor = 0.5;  // of the episodes that run when it is saved
   for (int k = 0; k < 30; ++k) one.Step(0.3f, -0.2f);
   one.batch->mutable_options().goal_angle = 1.0;
+  one.batch->mutable_options().near_share = 0.25;
   one.batch->mutable_options().gravity_factor = 0.75;  // of those to come
   const auto image = one.batch->Save();
   two.batch->Restore(image);
   EXPECT_EQ(two.batch->Save(), image);
   EXPECT_EQ(two.batch->mutable_options().goal_angle, 1.0);
+  EXPECT_EQ(two.batch->mutable_options().near_share, 0.25);
   for (int k = 0; k < 40; ++k) {
     const StepResult a = one.Step(-0.1f, 0.4f), b = two.Step(-0.1f, 0.4f);
     EXPECT_EQ(a.reward, b.reward);
