@@ -16,10 +16,14 @@ int main(int argc, char** argv) {
   StageKind kind;
   std::string base;
   double share = 1;
+  bool rate_of_base = true;
   options.Add("base", &base, "checkpoint of train_base").Required();
   options.Add("categories", &kind.categories, "categories to train on; none: all (generalist)");
   options.Add("share", &share, "factor on `samples`, where other numbers of experts share a total")
       .Range(0, 64);
+  options.Add("rate_of_base", &rate_of_base,
+              "start at the rate that the base had come to, where it adapts; else at "
+              "ppo.learning_rate");
   stage.Register(options);
   return RunTool(options, argc, argv, [&] {
     stage.samples *= share;
@@ -27,7 +31,10 @@ int main(int argc, char** argv) {
     kind.inputs = {base};
     kind.cloud_points = parent.structure.cloud_points;
     kind.start = [&](const StageStart& start, int, int, int) {
-      return StartExpert(start, parent, base);
+      // A rate for a fresh network undoes what a base with little noise left has learned.
+      StageStart own = start;
+      if (rate_of_base && start.ppo.adaptive) own.ppo.learning_rate = parent.learning_rate;
+      return StartExpert(own, parent, base);
     };
     const auto ranks = StartCommunicator();
     const TrainState state = RunStage(stage, options, kind, *ranks, CatchStopSignals());

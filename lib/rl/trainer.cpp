@@ -118,7 +118,9 @@ const TrainState& Trainer::Snapshot() {
 
 void Trainer::Judge() {
   improved_ = false;
-  if (state_.settled < options_.stats_window) return;
+  // The first episodes that end after a change were begun before it, one an environment.
+  const int begun_before = env_.num_envs() * communicator_.size();
+  if (state_.settled < begun_before + options_.stats_window) return;
   const TaskDifficulty& now = state_.curriculum.difficulty;
   const double share =
       now.objects > 0 ? static_cast<double>(now.objects) / state_.table.objects() : 1.0;

@@ -33,7 +33,7 @@ class Trainer {
   // One rollout and update; appends to state().curve.
   const CurveRow& Iterate();
   // Whether the last Iterate raised state().best. A score counts once the window is full of
-  // episodes that ended at the present difficulty: what came before says nothing about it.
+  // episodes that began at the present difficulty: what came before says nothing about it.
   bool improved() const { return improved_; }
   const IterationTime& time() const { return time_; }
 

@@ -58,7 +58,7 @@ TEST(RunFiles, AHarderTaskOutranksMoreSuccessesOnceItsEpisodesFillTheWindow) {
   ppo.curriculum = true;
   ppo.curriculum_threshold = 0;
   ppo.curriculum_period = 9600;  // moves after every fifth iteration
-  ppo.stats_window = 200;        // filled by the third at the new difficulty
+  ppo.stats_window = 140;        // with the episodes begun before: filled by the third
   ToyRun run(ToyBase(ppo), 2, ppo);
   double progress = 0;            // of the best state
   double before = 0;              // of the curriculum
