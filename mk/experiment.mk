@@ -27,6 +27,11 @@ train: deps  ## train base, experts and gate (SCALE=quick, desk or paper); calle
 	+@$(MAKE) -j1 --no-print-directory EXPERIMENT=1 trained
 	@printf 'Trained: %s\nWatch with: tensorboard --logdir %s\n' $(OUT)/gate.h5 $(OUT)/tensorboard
 
+.PHONY: stages
+stages: deps  ## compare base, generalist, average of the experts and gate of a run: tables/stages.md
+	+@$(MAKE) $(JOBS) --no-print-directory build
+	+@$(MAKE) -j1 --no-print-directory EXPERIMENT=1 $(OUT)/tables/stages.md
+
 .PHONY: gallery
 gallery: deps  ## draw contact sheets of all objects, their parts and clouds: results/RUN/gallery/
 	+@$(MAKE) $(JOBS) --no-print-directory build
@@ -214,6 +219,24 @@ $(CONTROLS): $(OUT)/eval/%.h5: $(READY) $(call settings,eval) | $(BIN)/evaluate
 $(OUT)/tables/learned.md: $(CONTROLS) $(CHECK_FILES) | $(BIN)/tabulate
 	$(BIN)/tabulate --engines --eval=$(call commas,$^) --out=$(basename $@) \
 	  --labels="Open-loop hold,Untrained,$(call commas,$(CHECKED:%=Base:%))"
+
+# The stages side by side: what experts and gate add to the base, on lanes and, at fewer episodes, on
+# ODE.
+stages_lanes := base expert_generalist uniform gate
+stages_ode   := base gate
+check_stages_ode := --eval.episodes=10 --eval.tolerances=0.4
+STAGE_FILES := $(foreach e,lanes ode,$(stages_$(e):%=$(OUT)/eval/stages/%_$(e).h5))
+# $(1): engine
+define stage_rule
+$(stages_$(1):%=$(OUT)/eval/stages/%_$(1).h5): $(OUT)/eval/stages/%_$(1).h5: $(OUT)/%.h5 $(call settings,eval) | $(BIN)/evaluate
+	@mkdir -p $$(@D)
+	$(BIN)/evaluate $(COMMON) $(RUNS) --split=all $(check_$(1)) $(check_stages_$(1)) --policy=$$< \
+	  --objects=$(OUT)/objects.csv --out=$$@ >$$(@:.h5=.txt)
+endef
+$(foreach e,lanes ode,$(eval $(call stage_rule,$(e))))
+$(OUT)/tables/stages.md: $(STAGE_FILES) | $(BIN)/tabulate
+	$(BIN)/tabulate --engines --eval=$(call commas,$(STAGE_FILES)) --out=$(basename $@) \
+	  --labels="Base policy:lanes,Generalist expert:lanes,Uniform average:lanes,DexReMoE:lanes,Base policy:ode,DexReMoE:ode"
 
 $(OUT)/tsne.h5: $(OUT)/gate.h5 $(OUT)/shape_net.h5 $(call settings,embed_gate) | $(BIN)/embed_gate $(OBJECTS_READY)
 	$(BIN)/embed_gate $(COMMON) --workers=$(WORKERS) --gate=$< --net=$(OUT)/shape_net.h5 \

@@ -4,7 +4,7 @@ GROWN_RUNS = $(patsubst results/%/eval/growth/done,%,$(wildcard results/*/eval/g
 LEARN_COLUMNS := successes_per_600,drop_rate,mean_angle,goal_angle
 
 PUBLISHED_TABLES := $(foreach t,table1 categories ablation_experts ablation_gate,$(addprefix $(t).,md csv tex)) \
-  methods.md best_worst.md best_worst.csv sizes.md
+  methods.md stages.md best_worst.md best_worst.csv sizes.md
 PUBLISHED_FIGURES := $(addsuffix .png,objects parts hand hand_parts curves per_object tsne strip baselines adr \
   ablation_experts ablation_gate best_worst sorted hardest others push size samples)
 
@@ -13,7 +13,7 @@ publish:  ## copy what tables and figures a run has to results/tables and paper_
 	@mkdir -p results/tables paper_figs
 	cp $(wildcard $(PUBLISHED_TABLES:%=$(OUT)/tables/%)) results/tables/
 	cp $(wildcard $(PUBLISHED_FIGURES:%=$(OUT)/figures/%)) paper_figs/
-	@for run in cube six desk; do for table in results/$$run*/tables/learned.md; do [ ! -f $$table ] || \
+	@for run in cube six; do for table in results/$$run*/tables/learned.md; do [ ! -f $$table ] || \
 	  cp $$table results/tables/learned_$$(basename $$(dirname $$(dirname $$table))).md; done; done
 	@runs=$$(ls -d results/{cube,six,desk}*/curves/base.csv 2>/dev/null | cut -d/ -f2 || true); \
 	[ -z "$$runs" ] || for x in samples seconds; do \
