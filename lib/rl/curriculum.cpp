@@ -10,13 +10,14 @@ Curriculum::Curriculum(const PpoOptions& options, const TaskDifficulty& task, in
 
 CurriculumState Curriculum::Start() const {
   CurriculumState state;
-  state.difficulty = task_;
-  if (!options_.curriculum) return state;
-  state.difficulty.goal_angle = std::min(options_.goal_angle_start, task_.goal_angle);
-  state.difficulty.velocity_tolerance = std::max(options_.velocity_start, task_.velocity_tolerance);
-  state.difficulty.gravity_factor = std::min(options_.gravity_start, task_.gravity_factor);
-  state.difficulty.objects = std::min(options_.curriculum_objects, objects_);
-  Complete(state.difficulty);
+  TaskDifficulty& first = state.difficulty = task_;
+  if (options_.curriculum) {
+    first.goal_angle = std::min(options_.goal_angle_start, task_.goal_angle);
+    first.velocity_tolerance = std::max(options_.velocity_start, task_.velocity_tolerance);
+    first.gravity_factor = std::min(options_.gravity_start, task_.gravity_factor);
+    first.objects = std::min(options_.curriculum_objects, objects_);
+  }
+  Complete(0, first);
   return state;
 }
 
@@ -28,11 +29,11 @@ bool Curriculum::VelocityOpen(const TaskDifficulty& now) const {
   return now.velocity_tolerance > task_.velocity_tolerance;
 }
 
-// What goals and speeds are is in every checkpoint; this follows from it.
-void Curriculum::Complete(TaskDifficulty& now) const {
+void Curriculum::Complete(std::int64_t samples, TaskDifficulty& now) const {
   const bool open = options_.curriculum && (AngleOpen(now) || VelocityOpen(now));
   now.near_share =
       open && options_.near_share_start >= 0 ? options_.near_share_start : task_.near_share;
+  now.fall_share = options_.FallShare(samples);
 }
 
 bool Curriculum::Update(std::int64_t samples, const std::vector<EpisodeRecord>& records,
@@ -70,7 +71,6 @@ bool Curriculum::Advance(CurriculumState& state) const {
     now.velocity_tolerance =
         std::max(now.velocity_tolerance * options_.velocity_factor, task_.velocity_tolerance);
   state.angle_next = !move_angle;
-  Complete(now);
   return true;
 }
 

@@ -1,6 +1,6 @@
 // Goals come nearer, the speed rule is looser and objects weigh less at first; all move to the
-// paper's task as the policy succeeds. Then the goals are near no more often than the task says and,
-// with options.curriculum_objects, more objects follow.
+// paper's task as the policy succeeds. Then the goals are near no more often than the task says
+// and, with options.curriculum_objects, more objects follow. Falls get dearer with samples alone.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,9 @@ class Curriculum {
   // Accounts for one iteration; returns true when the difficulty changed.
   bool Update(std::int64_t samples, const std::vector<EpisodeRecord>& records,
               CurriculumState& state) const;
-  // Sets near_share, which follows from goals and speeds and is in no checkpoint.
-  void Complete(TaskDifficulty& now) const;
+  // Sets near_share, which follows from goals and speeds, and fall_share, which follows from the
+  // samples so far: they are in no checkpoint.
+  void Complete(std::int64_t samples, TaskDifficulty& now) const;
 
  private:
   bool AngleOpen(const TaskDifficulty& now) const;  // not the task's yet

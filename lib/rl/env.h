@@ -15,6 +15,7 @@ struct TaskDifficulty {
   double gravity_factor = 1;      // of the episodes to come
   int objects = 0;                // the first of the list, in use; 0: all, from the start
   double near_share = 0;          // of the goals
+  double fall_share = 1;          // of task.c_fall that a fall costs
 };
 
 class VecEnv {

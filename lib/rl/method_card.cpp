@@ -67,6 +67,10 @@ std::string CurriculumOf(const std::string& method, const PpoOptions& ppo) {
     text += fmt::format(", {} of them near until both are the task's", ppo.near_share_start);
   if (ppo.curriculum && ppo.curriculum_objects > 0)
     text += fmt::format(", then objects from {} doubling", ppo.curriculum_objects);
+  if (ppo.span > 0 && ppo.fall_share_start != 1)
+    text += fmt::format(", falls at {} of their price until late", ppo.fall_share_start);
+  if (ppo.span > 0 && ppo.kl_end > 0)
+    text += fmt::format(", KL threshold from {} to {}", ppo.kl_threshold, ppo.kl_end);
   if (method == "dr") text += "; episodes randomised in fixed ranges";
   if (method == "adr") text += "; episodes randomised in ranges that move with success";
   return text;

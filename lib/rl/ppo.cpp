@@ -36,10 +36,9 @@ void GatherRows(const std::vector<T>& from, int width, const int* rows, int coun
 
 }  // namespace
 
-double AdaptRate(const PpoOptions& options, double kl, double rate) {
-  if (kl > 2 * options.kl_threshold) return std::max(rate / options.rate_factor, options.rate_min);
-  if (kl < 0.5 * options.kl_threshold)
-    return std::min(rate * options.rate_factor, options.rate_max);
+double AdaptRate(const PpoOptions& options, double threshold, double kl, double rate) {
+  if (kl > 2 * threshold) return std::max(rate / options.rate_factor, options.rate_min);
+  if (kl < 0.5 * threshold) return std::min(rate * options.rate_factor, options.rate_max);
   return rate;
 }
 
@@ -88,7 +87,8 @@ UpdateStats PpoLearner::Update(const RolloutBatch& batch, const ShapeInputs<floa
     stats.gradient_norm += norm / minibatches / options_.mini_epochs;
     if (options_.adaptive)
       state.learning_rate =
-          AdaptRate(options_, total.kl / static_cast<double>(all_rows), state.learning_rate);
+          AdaptRate(options_, options_.KlThreshold(state.samples),
+                    total.kl / static_cast<double>(all_rows), state.learning_rate);
   }
   CheckFinite(values_, "value", state);
   return stats;

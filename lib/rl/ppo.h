@@ -27,7 +27,7 @@ struct UpdateStats {
 
 // The adaptive rule, applied once per mini-epoch: down by rate_factor above twice the threshold, up
 // below half of it, within [rate_min, rate_max].
-double AdaptRate(const PpoOptions& options, double kl, double rate);
+double AdaptRate(const PpoOptions& options, double threshold, double kl, double rate);
 
 // Each minibatch is cut into blocks of rows; a block's gradient is one unit of work, and gradients
 // are summed in block order. So the result does not depend on the number of threads.

@@ -1,5 +1,8 @@
 #include "rl/ppo_options.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.h"
 
 namespace dexremoe {
@@ -26,6 +29,8 @@ void PpoOptions::Register(Options& options) {
   options.Add("ppo.learning_rate", &learning_rate, "Adam's rate at the start").Range(0, 1);
   options.Add("ppo.adaptive", &adaptive, "adapt the rate to the KL divergence");
   options.Add("ppo.kl_threshold", &kl_threshold, "KL per mini-epoch, nats").Range(1e-9, 1e3);
+  options.Add("ppo.kl_end", &kl_end, "its value at the end of a training; 0: the same throughout")
+      .Range(0, 1e3);
   options.Add("ppo.rate_factor", &rate_factor, "step of the adaptive rate").Range(1, 100);
   options.Add("ppo.rate_min", &rate_min, "lower limit of the rate").Range(0, 1);
   options.Add("ppo.rate_max", &rate_max, "upper limit of the rate").Range(0, 1);
@@ -45,6 +50,14 @@ void PpoOptions::Register(Options& options) {
       .Add("ppo.near_share_start", &near_share_start,
            "share of near goals until goals and speeds are the task's; -1: task.near_share")
       .Range(-1, 1);
+  options
+      .Add("ppo.fall_share_start", &fall_share_start,
+           "share of task.c_fall at the start of a training; all of it at the end")
+      .Range(0, 100);
+  options
+      .Add("ppo.late_from", &late_from,
+           "share of a training's samples before ppo.kl_end and ppo.fall_share_start act")
+      .Range(0, 0.999);
   options.Add("ppo.curriculum_threshold", &curriculum_threshold, "successes per episode to advance")
       .Range(0, 600);
   options.Add("ppo.curriculum_period", &curriculum_period, "samples between decisions")
@@ -55,6 +68,20 @@ void PpoOptions::Register(Options& options) {
       .Range(0, 1 << 20);
   options.Add("ppo.stats_window", &stats_window, "last episodes in the curve; 0: as environments")
       .Range(0, 1 << 24);
+}
+
+double PpoOptions::Late(std::int64_t samples) const {
+  if (span == 0) return 1;
+  return std::clamp((static_cast<double>(samples) / span - late_from) / (1 - late_from), 0.0, 1.0);
+}
+
+double PpoOptions::KlThreshold(std::int64_t samples) const {
+  if (kl_end == 0) return kl_threshold;
+  return kl_threshold * std::pow(kl_end / kl_threshold, Late(samples));
+}
+
+double PpoOptions::FallShare(std::int64_t samples) const {
+  return fall_share_start + (1 - fall_share_start) * Late(samples);
 }
 
 void PpoOptions::Check() const {

@@ -2,6 +2,7 @@
 // else what its line of work uses (IsaacGymEnvs, Hora; rl_games).
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "base/options.h"
@@ -30,6 +31,9 @@ struct PpoOptions {
   double learning_rate = 5e-3;  // at the start (paper)
   bool adaptive = true;
   double kl_threshold = 0.02;  // paper
+  // Threshold at the end of a training, come to geometrically from late_from on; 0: the same
+  // throughout. NOTE(paper): not there.
+  double kl_end = 0;
   double rate_factor = 1.5;
   double rate_min = 1e-6, rate_max = 1e-2;
   // "previous": against the policy that the rows met in the mini-epoch before (Hora, rl_games).
@@ -46,10 +50,11 @@ struct PpoOptions {
   double goal_angle_factor = 1.1;
   double velocity_start = 5.0;  // times the speeds a success allows
   double velocity_factor = 0.85;
-  double gravity_start = 1;           // times gravity; below 0 objects fall into the palm at first
-  double gravity_step = 0.05;         // rise of that factor with every advance
+  double gravity_start = 1;    // times gravity; below 0 objects fall into the palm at first
+  double gravity_step = 0.05;  // rise of that factor with every advance
   // Until goals and speeds are the task's; then task.near_share, which it is throughout below 0.
   double near_share_start = -1;
+  double fall_share_start = 1;        // of task.c_fall at first; rises linearly from late_from on
   double curriculum_threshold = 1.5;  // successes per episode
   double curriculum_period = 5e5;     // samples between decisions
   // Objects to begin with; once goals and speeds are the task's they double with every advance. 0:
@@ -58,9 +63,20 @@ struct PpoOptions {
   // Figures.
   int stats_window = 0;  // last episodes in the curve; 0 takes the number of environments
 
+  // The share of a training's samples after which kl_end and fall_share_start begin to act.
+  double late_from = 0;
+  // Samples of the training, for these; 0: they are at their end, as befits a stage that goes on
+  // from a trained policy. Set by the stage, no option.
+  double span = 0;
+
   void Register(Options& options);
+  double KlThreshold(std::int64_t samples) const;  // after so many samples
+  double FallShare(std::int64_t samples) const;
   // Throws Error when the numbers do not fit together.
   void Check() const;
+
+ private:
+  double Late(std::int64_t samples) const;  // 0 until late_from, 1 at the end
 };
 
 }  // namespace dexremoe

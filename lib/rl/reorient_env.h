@@ -8,7 +8,8 @@ namespace dexremoe {
 class ReorientEnv final : public VecEnv {
  public:
   // `batch` must outlive this.
-  explicit ReorientEnv(ReorientBatch& batch) : batch_(batch) {}
+  explicit ReorientEnv(ReorientBatch& batch)
+      : batch_(batch), c_fall_(batch.mutable_options().c_fall) {}
 
   int num_envs() const override { return batch_.num_envs(); }
   int first_env() const override { return batch_.first_env(); }
@@ -29,6 +30,7 @@ class ReorientEnv final : public VecEnv {
     batch_.mutable_options().gravity_factor = difficulty.gravity_factor;
     batch_.mutable_options().objects_in_use = difficulty.objects;
     batch_.mutable_options().near_share = difficulty.near_share;
+    batch_.mutable_options().c_fall = difficulty.fall_share * c_fall_;
   }
   void SetRandomRanges(const std::vector<double>& low, const std::vector<double>& high) override {
     for (int i = 0; i < kNumRandom; ++i)
@@ -39,6 +41,7 @@ class ReorientEnv final : public VecEnv {
 
  private:
   ReorientBatch& batch_;
+  const double c_fall_;  // the task's
 };
 
 }  // namespace dexremoe

@@ -17,6 +17,13 @@
 namespace dexremoe {
 namespace {
 
+// The learner's options, with the length that its schedules go by.
+PpoOptions Learning(const StageOptions& stage, const StageKind& kind) {
+  PpoOptions ppo = stage.ppo;
+  ppo.span = kind.inputs.empty() ? stage.samples : 0;
+  return ppo;
+}
+
 void PutFirst(const std::string& name, const std::string& list, std::vector<ObjectEntry>& entries) {
   if (name.empty()) return;
   const auto found = std::find_if(entries.begin(), entries.end(),
@@ -81,7 +88,7 @@ TrainState FirstState(const StageOptions& stage, const Options& options, const S
     return state;
   }
   TrainState state = kind.start(start, env.obs_size(), env.phys_size(), env.num_actions());
-  state.card = DescribeMethod(state.stage, state.structure, stage.ppo);
+  state.card = DescribeMethod(state.stage, state.structure, start.ppo);
   CheckSizes(state, env, kind.inputs.empty() ? stage.out : kind.inputs.front());
   return state;
 }
@@ -188,16 +195,16 @@ TrainState RunStage(const StageOptions& stage, const Options& options, const Sta
   ReorientBatch batch(stage.task, stage.sim, hand, objects, envs, stage.seed, pool);
   batch.PlaceIn(ranks.rank() * envs, stage.ppo.envs);
   ReorientEnv env(batch);
-  const StageStart start = {
-      stage.ppo,
-      {.goal_angle = stage.task.goal_angle,
-       .velocity_tolerance = stage.task.velocity_tolerance,
-       .gravity_factor = stage.task.gravity_factor,
-       .near_share = stage.task.near_share},
-      MakeShapeTable(objects, FeatureSize(kind.cloud_points)),
-      stage.seed};
-  Trainer trainer(stage.ppo, start.task, FirstState(stage, options, kind, start, env, ranks), env,
-                  pool, ranks, stage.adr);
+  const PpoOptions ppo = Learning(stage, kind);
+  const StageStart start = {ppo,
+                            {.goal_angle = stage.task.goal_angle,
+                             .velocity_tolerance = stage.task.velocity_tolerance,
+                             .gravity_factor = stage.task.gravity_factor,
+                             .near_share = stage.task.near_share},
+                            MakeShapeTable(objects, FeatureSize(kind.cloud_points)),
+                            stage.seed};
+  Trainer trainer(ppo, start.task, FirstState(stage, options, kind, start, env, ranks), env, pool,
+                  ranks, stage.adr);
   std::optional<RunFiles> files;
   if (ranks.rank() == 0)
     files.emplace(

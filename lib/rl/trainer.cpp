@@ -67,8 +67,7 @@ Trainer::Trainer(const PpoOptions& options, const TaskDifficulty& task, TrainSta
     DEX_CHECK_EQ(static_cast<int>(state_.environment.size()), communicator.size());
     env_.Restore(state_.environment[communicator.rank()]);
   }
-  curriculum_.Complete(state_.curriculum.difficulty);
-  env_.SetDifficulty(state_.curriculum.difficulty);
+  SetDifficulty();
   if (adr_.on) {
     if (state_.adr.empty()) state_.adr = StartAdr();
     env_.SetRandomRanges(state_.adr.low, state_.adr.high);
@@ -102,10 +101,8 @@ const CurveRow& Trainer::Iterate() {
   AddRecords(records);
   state_.curve.push_back(MakeRow(stats, rate));
   Judge();
-  if (curriculum_.Update(samples, records, state_.curriculum)) {
-    env_.SetDifficulty(state_.curriculum.difficulty);
-    state_.settled = 0;
-  }
+  if (curriculum_.Update(samples, records, state_.curriculum)) state_.settled = 0;
+  SetDifficulty();
   if (adr_.on && UpdateAdr(adr_, records, state_.samples, state_.adr))
     env_.SetRandomRanges(state_.adr.low, state_.adr.high);
   return state_.curve.back();
@@ -114,6 +111,11 @@ const CurveRow& Trainer::Iterate() {
 const TrainState& Trainer::Snapshot() {
   state_.environment = communicator_.Gather(env_.Save());
   return state_;
+}
+
+void Trainer::SetDifficulty() {
+  curriculum_.Complete(state_.samples, state_.curriculum.difficulty);
+  env_.SetDifficulty(state_.curriculum.difficulty);
 }
 
 void Trainer::Judge() {

@@ -46,6 +46,7 @@ class Trainer {
  private:
   std::vector<EpisodeRecord> RecordsOfAllRanks(std::vector<EpisodeRecord> records);
   void AddRecords(const std::vector<EpisodeRecord>& records);
+  void SetDifficulty();
   void Judge();
   CurveRow MakeRow(const UpdateStats& stats, double learning_rate) const;
 

@@ -85,6 +85,7 @@ TEST(Curriculum, HalfOfTheGoalsAreNearUntilGoalsAndSpeedsAreTheTasks) {
   for (int moves = 0; moves < 2; ++moves) {
     EXPECT_EQ(state.difficulty.near_share, 0.5);
     ASSERT_TRUE(curriculum.Update(100, Episodes({2}), state));
+    curriculum.Complete(100, state.difficulty);
   }
   EXPECT_EQ(state.difficulty.near_share, 0.1);
 }
@@ -98,14 +99,39 @@ TEST(Curriculum, TheShareOfNearGoalsIsTheTasksUnlessAskedFor) {
   }
 }
 
+TEST(Curriculum, FallsGetDearerLateInATrainingFromScratch) {
+  PpoOptions options = Options();
+  options.fall_share_start = 0.25;
+  options.late_from = 0.2;
+  options.span = 1000;
+  TaskDifficulty now;
+  for (const bool on : {false, true}) {
+    options.curriculum = on;
+    const Curriculum curriculum(options, {});
+    EXPECT_EQ(curriculum.Start().difficulty.fall_share, 0.25);
+    curriculum.Complete(200, now);
+    EXPECT_EQ(now.fall_share, 0.25);
+    curriculum.Complete(600, now);
+    EXPECT_DOUBLE_EQ(now.fall_share, 0.625);
+    curriculum.Complete(2000, now);
+    EXPECT_EQ(now.fall_share, 1);
+  }
+}
+
+TEST(Curriculum, FallsCostAllOfTheirPriceInAStageThatGoesOn) {
+  PpoOptions options = Options();
+  options.fall_share_start = 0.25;
+  EXPECT_EQ(Curriculum(options, {}).Start().difficulty.fall_share, 1);
+}
+
 // A checkpoint has goals and speeds alone.
 TEST(Curriculum, CompletesADifficultyFromGoalsAndSpeeds) {
   PpoOptions options = Options();
   options.near_share_start = 0.5;
   const Curriculum curriculum(options, {.goal_angle = 2, .near_share = 0.1});
   TaskDifficulty on_the_way = {.goal_angle = 1.5}, arrived = {.goal_angle = 2};
-  curriculum.Complete(on_the_way);
-  curriculum.Complete(arrived);
+  curriculum.Complete(100, on_the_way);
+  curriculum.Complete(100, arrived);
   EXPECT_EQ(on_the_way.near_share, 0.5);
   EXPECT_EQ(arrived.near_share, 0.1);
 }

@@ -184,11 +184,27 @@ TEST(Gae, NormalisedAdvantagesHaveMeanZeroAndVarianceOne) {
 
 TEST(AdaptiveRate, FollowsTheKlWithinItsLimits) {
   PpoOptions options;  // threshold 0.02, factor 1.5, limits 1e-6 and 1e-2
-  EXPECT_DOUBLE_EQ(AdaptRate(options, 0.05, 3e-4), 2e-4);
-  EXPECT_DOUBLE_EQ(AdaptRate(options, 0.005, 2e-4), 3e-4);
-  for (const double kl : {0.011, 0.02, 0.039}) EXPECT_DOUBLE_EQ(AdaptRate(options, kl, 2e-4), 2e-4);
-  EXPECT_DOUBLE_EQ(AdaptRate(options, 1, 1.2e-6), 1e-6);
-  EXPECT_DOUBLE_EQ(AdaptRate(options, 0, 9e-3), 1e-2);
+  const auto adapt = [&](double kl, double rate) { return AdaptRate(options, 0.02, kl, rate); };
+  EXPECT_DOUBLE_EQ(adapt(0.05, 3e-4), 2e-4);
+  EXPECT_DOUBLE_EQ(adapt(0.005, 2e-4), 3e-4);
+  for (const double kl : {0.011, 0.02, 0.039}) EXPECT_DOUBLE_EQ(adapt(kl, 2e-4), 2e-4);
+  EXPECT_DOUBLE_EQ(adapt(1, 1.2e-6), 1e-6);
+  EXPECT_DOUBLE_EQ(adapt(0, 9e-3), 1e-2);
+}
+
+TEST(AdaptiveRate, ThresholdFallsGeometricallyOverATrainingAndStaysAtItsEnd) {
+  PpoOptions options;
+  EXPECT_EQ(options.KlThreshold(1000), 0.02);
+  options.kl_end = 0.005;
+  EXPECT_EQ(options.KlThreshold(0), 0.005);  // a stage that goes on
+  options.span = 1000;
+  EXPECT_EQ(options.KlThreshold(0), 0.02);
+  EXPECT_DOUBLE_EQ(options.KlThreshold(500), 0.01);
+  EXPECT_DOUBLE_EQ(options.KlThreshold(1000), 0.005);
+  EXPECT_DOUBLE_EQ(options.KlThreshold(5000), 0.005);
+  options.late_from = 0.5;
+  EXPECT_EQ(options.KlThreshold(500), 0.02);
+  EXPECT_DOUBLE_EQ(options.KlThreshold(750), 0.01);
 }
 
 }  // namespace

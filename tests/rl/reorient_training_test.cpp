@@ -36,12 +36,16 @@ PpoOptions SmallPpo() {
   ppo.curriculum_period = 1;
   ppo.gravity_start = -0.5;
   ppo.gravity_step = 0.2;
+  ppo.fall_share_start = 0.5;
+  ppo.kl_end = 0.005;
+  ppo.span = 8 * 6 * 12;  // eight iterations
   return ppo;
 }
 
 TaskOptions ShortTask() {
   TaskOptions task;
   task.episode_length = 30;  // so that timeouts are among what is resumed
+  task.c_fall = -100;
   return task;
 }
 
@@ -85,6 +89,16 @@ TEST(ReorientTraining, ResumedRunEqualsTheUninterruptedOneByteForByteForAnyWorke
   second.Iterate(3);
   WriteCheckpoint(folder / "resumed.h5", second.trainer->Snapshot(), ToyProvenance());
   EXPECT_EQ(ReadFile(folder / "whole.h5"), ReadFile(folder / "resumed.h5"));
+  EXPECT_DOUBLE_EQ(whole.batch.mutable_options().c_fall, -87.5);  // three quarters of the way
+  EXPECT_EQ(second.batch.mutable_options().c_fall, whole.batch.mutable_options().c_fall);
+}
+
+TEST(ReorientTraining, AFallCostsItsShareOfTheTasksPrice) {
+  RealRun run(LoadHand(HandOptions()), 1);
+  for (const double share : {0.25, 1.0}) {
+    run.env.SetDifficulty({.fall_share = share});
+    EXPECT_EQ(run.batch.mutable_options().c_fall, -100 * share);
+  }
 }
 
 }  // namespace
