@@ -9,8 +9,8 @@ switch_no_progress_reward := --task.c_progress=0
 switch_no_fall_penalty    := --task.c_fall=0
 switch_no_end_of_jams     := --task.goal_timeout=0
 switch_no_jam_penalty     := --task.c_jam=0
-switch_no_near_goals      := --ppo.near_share_start=0
-switch_always_near_goals  := --task.near_share=0.5 --ppo.near_share_start=-1
+switch_no_near_goals      := --task.near_share=0
+switch_near_goals_first   := --task.near_share=0 --ppo.near_share_start=0.5
 switch_no_curriculum      := --ppo.curriculum=false
 switch_goal_as_it_is      := --task.goal_shown=3.1416
 switch_60_decisions       := --task.action_repeat=1 --ppo.gamma=0.9967
