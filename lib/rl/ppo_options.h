@@ -63,8 +63,8 @@ struct PpoOptions {
   // Figures.
   int stats_window = 0;  // last episodes in the curve; 0 takes the number of environments
 
-  // The share of a training's samples after which kl_end and fall_share_start begin to act.
-  double late_from = 0;
+  // Late in a training. NOTE(paper): not there.
+  double late_from = 0;  // share of its samples after which kl_end and fall_share_start act
   // Samples of the training, for these; 0: they are at their end, as befits a stage that goes on
   // from a trained policy. Set by the stage, no option.
   double span = 0;
