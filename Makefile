@@ -22,7 +22,7 @@ OUT ?= results/$(SCALE)$(if $(filter builtin,$(OBJECTS)),,-$(notdir $(OBJECTS:%/
 # The configuration files of a size, a later one winning.
 CONFIG_quick := data/config/desk.toml data/config/quick.toml
 CONFIG_small := $(CONFIG_quick) data/config/small.toml
-CONFIG_desk  := data/config/desk.toml
+CONFIG_desk  := data/config/desk.toml data/config/fine_end.toml
 CONFIG_paper := data/config/paper.toml
 
 # Recursive calls use all processors unless the user gave -j.

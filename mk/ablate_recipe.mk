@@ -1,5 +1,6 @@
 # `make ablate-recipe`: which parts of the desk recipe earn their place. Each is switched off in turn, on the cube of
-# `make cube`, over several seeds; the table shows the deterministic policies on the paper's task.
+# `make cube`, over several seeds, without the fine end; the table shows the deterministic policies on the paper's task.
+# Trainings run side by side, each on one thread.
 
 ABLATE_SAMPLES ?= 30000000
 ABLATE_SEEDS   ?= 1 2
@@ -30,9 +31,9 @@ ABLATED  := $(foreach s,$(SWITCHES),$(foreach n,$(ABLATE_SEEDS),$(OUT)/$(s)-$(n)
 ablate-recipe: deps  ## train the cube without each part of the desk recipe in turn (hours)
 	+@$(MAKE) $(JOBS) --no-print-directory build
 	$(BIN)/make_objects --recipes=data/shapes --out=meshes/shapes
-	+@$(MAKE) -j1 --no-print-directory EXPERIMENT=1 OBJECTS=meshes/shapes OUT=results/ablate \
+	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 OBJECTS=meshes/shapes OUT=results/ablate WORKERS=1 \
 	  CONFIG="data/config/desk.toml data/config/cube.toml" ablated-recipe
-ablated-recipe: $(OUT)/tables/ablate.md
+ablated-recipe: $(OUT)/tables/ablate_recipe.md
 
 # NAME-SEED.h5 from the switch and seed in its name; the curves lie beside it.
 switch_of = $(switch_$(firstword $(subst -, ,$(1))))
@@ -44,6 +45,12 @@ $(ABLATED:%=%.h5): $(OUT)/%.h5: $(READY) | $(BIN)/train_base
 $(ABLATED:%=%.eval.h5): $(OUT)/%.eval.h5: $(OUT)/%.h5 | $(BIN)/evaluate
 	$(BIN)/evaluate $(COMMON) $(RUNS) $(check) $(check_lanes) $(filter --task.%,$(call switch_of,$*)) --policy=$< \
 	  --objects=$(OUT)/objects.csv --out=$@ >$(@:.h5=.txt)
-$(OUT)/tables/ablate.md: $(ABLATED:%=%.eval.h5) | $(BIN)/tabulate
-	$(BIN)/tabulate --engines --eval=$(call commas,$^) --labels=$(call commas,$(notdir $(ABLATED))) \
+
+# A row for the episodes of all seeds and one for each of them.
+of_seeds      = $(ABLATE_SEEDS:%=$(OUT)/$(1)-%.eval.h5)
+ablate_files  = $(foreach s,$(SWITCHES),$(call of_seeds,$(s)) $(call of_seeds,$(s)))
+ablate_labels = $(foreach s,$(SWITCHES),$(foreach n,$(ABLATE_SEEDS),$(s)) $(ABLATE_SEEDS:%=$(s):seed%))
+$(OUT)/tables/ablate_recipe.md: $(ABLATED:%=%.eval.h5) | $(BIN)/tabulate
+	@mkdir -p $(@D)
+	$(BIN)/tabulate --engines --eval=$(call commas,$(ablate_files)) --labels=$(call commas,$(ablate_labels)) \
 	  --out=$(basename $@)

@@ -38,19 +38,20 @@ gallery: deps  ## draw contact sheets of all objects, their parts and clouds: re
 	+@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 $(OUT)/gallery/index.txt
 	@sed 's|^|  $(OUT)/gallery/|' $(OUT)/gallery/index.txt
 
-# The learning checks: a base policy by the desk recipe against the open-loop hold and the untrained
-# network, on every engine. SEED=2 makes a second run beside the first.
+# The learning checks: a base policy by the desk recipe and a fine end against the open-loop hold and
+# the untrained network, on every engine. SEED=2 makes a second run beside the first.
 seeded = results/$(1)$(if $(filter 1,$(SEED)),,-seed$(SEED))
+learn_config = $(patsubst %,data/config/%.toml,desk $(1) fine_end)
 LEARN = +@$(MAKE) $(JOBS) --no-print-directory EXPERIMENT=1 learned
 
 .PHONY: cube six learned
 cube: deps  ## train on a single cube by the desk recipe and check it on every engine (an hour)
 	+@$(MAKE) $(JOBS) --no-print-directory build
 	$(BIN)/make_objects --recipes=data/shapes --out=meshes/shapes
-	$(LEARN) OBJECTS=meshes/shapes OUT=$(call seeded,cube) CONFIG="data/config/desk.toml data/config/cube.toml"
+	$(LEARN) OBJECTS=meshes/shapes OUT=$(call seeded,cube) CONFIG="$(call learn_config,cube)"
 six: deps  ## the same on one mesh of each category of OBJECTS (an hour)
 	+@$(MAKE) $(JOBS) --no-print-directory build
-	$(LEARN) OUT=$(call seeded,six) CONFIG="data/config/desk.toml data/config/six.toml"
+	$(LEARN) OUT=$(call seeded,six) CONFIG="$(call learn_config,six)"
 learned: $(OUT)/tables/learned.md $(OUT)/figures/base.png $(OUT)/figures/growth.png
 
 # All objects, whatever the run takes of them.

@@ -13,6 +13,7 @@ publish:  ## copy what tables and figures a run has to results/tables and paper_
 	@mkdir -p results/tables paper_figs
 	cp $(wildcard $(PUBLISHED_TABLES:%=$(OUT)/tables/%)) results/tables/
 	cp $(wildcard $(PUBLISHED_FIGURES:%=$(OUT)/figures/%)) paper_figs/
+	@for table in $(wildcard results/ablate/tables/ablate_recipe.md); do cp $$table results/tables/; done
 	@for run in cube six; do for table in results/$$run*/tables/learned.md; do [ ! -f $$table ] || \
 	  cp $$table results/tables/learned_$$(basename $$(dirname $$(dirname $$table))).md; done; done
 	@runs=$$(ls -d results/{cube,six,desk}*/curves/base.csv 2>/dev/null | cut -d/ -f2 || true); \

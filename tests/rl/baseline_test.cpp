@@ -155,11 +155,17 @@ TEST(Baseline, CardSaysWhatTheMethodIs) {
   PpoOptions ppo = ToyPpo();
   ppo.curriculum = true;
   ppo.curriculum_objects = 1;
+  ppo.span = 1e6;
+  ppo.fall_share_start = 0.25;
+  ppo.kl_threshold = 0.02;
+  ppo.kl_end = 0.002;
   state.card = DescribeMethod("sparse_moe", state.structure, ppo);
   WriteCheckpoint(folder / "sparse.h5", state, ToyProvenance());
   const std::string table = MethodTable({folder / "sparse.h5"});
-  for (const char* words : {"noisy top-2 of 4 experts", "0.01 CV^2 importance + 0.01 CV^2 load",
-                            "o_t, e_phys, shape, category", "objects from 1 doubling"})
+  for (const char* words :
+       {"noisy top-2 of 4 experts", "0.01 CV^2 importance + 0.01 CV^2 load",
+        "o_t, e_phys, shape, category", "objects from 1 doubling",
+        "falls at 0.25 of their price until late", "KL threshold from 0.02 to 0.002"})
     EXPECT_NE(table.find(words), std::string::npos) << words << "\n" << table;
 }
 
