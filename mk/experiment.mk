@@ -28,9 +28,9 @@ train: deps  ## train base, experts and gate (SCALE=quick, desk or paper); calle
 	@printf 'Trained: %s\nWatch with: tensorboard --logdir %s\n' $(OUT)/gate.h5 $(OUT)/tensorboard
 
 .PHONY: stages
-stages: deps  ## compare base, generalist, average of the experts and gate of a run: tables/stages.md
+stages: deps  ## compare base, experts and gate of a run: tables/stages.md and, by category, specialists.md
 	+@$(MAKE) $(JOBS) --no-print-directory build
-	+@$(MAKE) -j1 --no-print-directory EXPERIMENT=1 $(OUT)/tables/stages.md
+	+@$(MAKE) -j1 --no-print-directory EXPERIMENT=1 $(OUT)/tables/stages.md $(OUT)/tables/specialists.md
 
 .PHONY: gallery
 gallery: deps  ## draw contact sheets of all objects, their parts and clouds: results/RUN/gallery/
@@ -222,22 +222,28 @@ $(OUT)/tables/learned.md: $(CONTROLS) $(CHECK_FILES) | $(BIN)/tabulate
 	  --labels="Open-loop hold,Untrained,$(call commas,$(CHECKED:%=Base:%))"
 
 # The stages side by side: what experts and gate add to the base, on lanes and, at fewer episodes, on
-# ODE.
+# ODE; and what each expert is worth on each category.
 stages_lanes := base expert_generalist uniform gate
 stages_ode   := base gate
+SPECIALISTS  := base $(EXPERTS:%=expert_%) gate
+SPECIALIST_LABELS := Base policy,Generalist expert,Airplane expert,Train expert,Animal expert,DexReMoE
+SPECIALIST_FILES  := $(SPECIALISTS:%=$(OUT)/eval/stages/%_lanes.h5)
 check_stages_ode := --eval.episodes=10 --eval.tolerances=0.4
 STAGE_FILES := $(foreach e,lanes ode,$(stages_$(e):%=$(OUT)/eval/stages/%_$(e).h5))
-# $(1): engine
+# $(1): engine; $(2): policies
 define stage_rule
-$(stages_$(1):%=$(OUT)/eval/stages/%_$(1).h5): $(OUT)/eval/stages/%_$(1).h5: $(OUT)/%.h5 $(call settings,eval) | $(BIN)/evaluate
+$(2:%=$(OUT)/eval/stages/%_$(1).h5): $(OUT)/eval/stages/%_$(1).h5: $(OUT)/%.h5 $(call settings,eval) | $(BIN)/evaluate
 	@mkdir -p $$(@D)
 	$(BIN)/evaluate $(COMMON) $(RUNS) --split=all $(check_$(1)) $(check_stages_$(1)) --policy=$$< \
 	  --objects=$(OUT)/objects.csv --out=$$@ >$$(@:.h5=.txt)
 endef
-$(foreach e,lanes ode,$(eval $(call stage_rule,$(e))))
+$(eval $(call stage_rule,lanes,$(sort $(stages_lanes) $(SPECIALISTS))))
+$(eval $(call stage_rule,ode,$(stages_ode)))
 $(OUT)/tables/stages.md: $(STAGE_FILES) | $(BIN)/tabulate
 	$(BIN)/tabulate --engines --eval=$(call commas,$(STAGE_FILES)) --out=$(basename $@) \
 	  --labels="Base policy:lanes,Generalist expert:lanes,Uniform average:lanes,DexReMoE:lanes,Base policy:ode,DexReMoE:ode"
+$(OUT)/tables/specialists.md: $(SPECIALIST_FILES) | $(BIN)/tabulate
+	$(BIN)/tabulate --categories --eval=$(call commas,$^) --labels="$(SPECIALIST_LABELS)" --out=$(basename $@)
 
 $(OUT)/tsne.h5: $(OUT)/gate.h5 $(OUT)/shape_net.h5 $(call settings,embed_gate) | $(BIN)/embed_gate $(OBJECTS_READY)
 	$(BIN)/embed_gate $(COMMON) --workers=$(WORKERS) --gate=$< --net=$(OUT)/shape_net.h5 \

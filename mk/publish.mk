@@ -4,7 +4,7 @@ GROWN_RUNS = $(patsubst results/%/eval/growth/done,%,$(wildcard results/*/eval/g
 LEARN_COLUMNS := successes_per_600,drop_rate,mean_angle,goal_angle
 
 PUBLISHED_TABLES := $(foreach t,table1 categories ablation_experts ablation_gate,$(addprefix $(t).,md csv tex)) \
-  methods.md stages.md best_worst.md best_worst.csv sizes.md
+  methods.md stages.md specialists.md best_worst.md best_worst.csv sizes.md
 PUBLISHED_FIGURES := $(addsuffix .png,objects parts hand hand_parts curves per_object tsne strip baselines adr \
   ablation_experts ablation_gate best_worst sorted hardest others push size samples)
 

@@ -50,8 +50,9 @@ std::vector<dexremoe::PaperNumber> PaperNumbers(const std::string& path,
 
 int main(int argc, char** argv) {
   std::vector<std::string> files, labels, paper_methods;
-  std::string paper, paper_table = "1", out;
-  bool engines = false, missing = false;
+  std::string paper, out;
+  dexremoe::TableOptions table;
+  bool missing = false;
   dexremoe::BootstrapOptions bootstrap;
   dexremoe::Options options(
       "tabulate",
@@ -62,17 +63,18 @@ int main(int argc, char** argv) {
   options.Add("eval", &files, "evaluations (dexremoe.eval), one per row").Required();
   options.Add("labels", &labels, "row labels; equal labels are seeds of one method").Required();
   options.Add("paper", &paper, "CSV with the paper's numbers; empty leaves them out");
-  options.Add("paper_table", &paper_table, "which of the paper's tables");
+  options.Add("paper_table", &table.paper_table, "which of the paper's tables");
   options.Add("paper_methods", &paper_methods, "which rows of it; none: all");
   options.Add("missing", &missing, "rows whose files are not there say so, instead of an error");
-  options.Add("engines", &engines, "rows are physics engines, not methods");
+  options.Add("engines", &table.engines, "rows are physics engines, not methods");
+  options.Add("categories", &table.categories, "columns are S_mean on each category, and on all");
   options.Add("resamples", &bootstrap.resamples, "bootstrap resamples").Range(0, 1e6);
   options.Add("seed", &bootstrap.seed, "seed of the bootstrap");
   options.Add("out", &out, "path without ending").Required().NotStored();
   return dexremoe::RunTool(options, argc, argv, [&] {
     const auto methods = Group(files, labels, missing);
     const auto numbers = PaperNumbers(paper, paper_methods);
-    const auto tables = dexremoe::MakeTables(methods, numbers, paper_table, bootstrap, engines);
+    const auto tables = dexremoe::MakeTables(methods, numbers, table, bootstrap);
     const std::string markdown = dexremoe::MarkdownOf(tables);
     dexremoe::WriteFile(out + ".csv", dexremoe::CsvOf(tables));
     dexremoe::WriteFile(out + ".tex", dexremoe::LatexOf(tables));

@@ -29,11 +29,11 @@ std::size_t ShownWidth(const std::string& text) {
 // All lines of a table as cells, the header first.
 std::vector<std::vector<std::string>> Cells(const ResultTable& table) {
   std::vector<std::vector<std::string>> lines(1, {"Method"});
-  for (const Metric column : table.columns) lines[0].push_back(Info(column).label);
+  for (const TableColumn& column : table.columns) lines[0].push_back(column.label());
   for (const TableRow& row : table.rows) {
     lines.push_back({row.paper ? row.label + " (paper)" : row.label});
     for (std::size_t c = 0; c < row.values.size(); ++c)
-      lines.back().push_back(row.missing ? "missing" : Cell(table.columns[c], row.values[c]));
+      lines.back().push_back(row.missing ? "missing" : Cell(table.columns[c].metric, row.values[c]));
   }
   return lines;
 }
@@ -82,8 +82,9 @@ std::string LatexEscaped(const std::string& text) {
   return out;
 }
 
-std::string LatexHeader(Metric column) {
-  switch (column) {
+std::string LatexHeader(const TableColumn& column) {
+  if (!column.category.empty()) return LatexEscaped(column.category);
+  switch (column.metric) {
     case Metric::kMin:
       return "$S_{\\min}$";
     case Metric::kMax:
@@ -95,7 +96,7 @@ std::string LatexHeader(Metric column) {
     case Metric::kMean:
       return "$\\bar S$";
     default:
-      return LatexEscaped(Info(column).label);
+      return LatexEscaped(column.label());
   }
 }
 
@@ -109,7 +110,7 @@ std::string LatexCell(Metric column, const Estimate& e) {
 std::string LatexTable(const ResultTable& table) {
   std::string text = "\\begin{table*}\n\\centering\n\\begin{tabular}{l" +
                      std::string(table.columns.size(), 'r') + "}\n\\toprule\nMethod";
-  for (const Metric column : table.columns) text += " & " + LatexHeader(column);
+  for (const TableColumn& column : table.columns) text += " & " + LatexHeader(column);
   text += " \\\\\n\\midrule\n";
   bool paper = false;
   for (const TableRow& row : table.rows) {
@@ -119,7 +120,7 @@ std::string LatexTable(const ResultTable& table) {
     if (row.missing)
       text += fmt::format(" & \\multicolumn{{{}}}{{c}}{{missing}}", row.values.size());
     for (std::size_t c = 0; !row.missing && c < row.values.size(); ++c)
-      text += " & " + LatexCell(table.columns[c], row.values[c]);
+      text += " & " + LatexCell(table.columns[c].metric, row.values[c]);
     text += " \\\\\n";
   }
   text += "\\bottomrule\n\\end{tabular}\n\\caption{" + LatexEscaped(table.caption) +
@@ -164,7 +165,7 @@ std::string CsvOf(const std::vector<ResultTable>& tables) {
                  row.paper     ? "paper"
                  : row.missing ? "missing"
                                : "ours",
-                 row.label, Info(table.columns[c]).name, number(e.value), number(e.low),
+                 row.label, table.columns[c].name(), number(e.value), number(e.low),
                  number(e.high)});
       }
   return csv.text();

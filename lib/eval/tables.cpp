@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "base/error.h"
@@ -15,9 +16,26 @@ namespace {
 constexpr double kPaperTolerance = 0.4;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-const std::vector<Metric> kColumns = {Metric::kMin,       Metric::kMax,   Metric::kWorst5,
-                                      Metric::kBest5,     Metric::kMean,  Metric::kPer600,
-                                      Metric::kFallShare, Metric::kLength};
+using Columns = std::vector<TableColumn>;
+
+Columns MetricColumns() {
+  Columns columns;
+  for (const Metric metric : {Metric::kMin, Metric::kMax, Metric::kWorst5, Metric::kBest5,
+                              Metric::kMean, Metric::kPer600, Metric::kFallShare, Metric::kLength})
+    columns.push_back({metric, {}});
+  return columns;
+}
+
+// The categories of a split's objects, in alphabetical order, and all of them.
+Columns CategoryColumns(const EvalFile& eval, const std::string& split) {
+  std::set<std::string> categories;
+  for (const EvalObject& object : eval.objects)
+    if (object.split == split) categories.insert(object.category);
+  Columns columns;
+  for (const std::string& category : categories) columns.push_back({Metric::kMean, category});
+  columns.push_back({});
+  return columns;
+}
 
 std::vector<std::string> ObjectNames(const EvalFile& eval, const std::string& split) {
   std::vector<std::string> names;
@@ -72,7 +90,7 @@ std::string SplitName(const std::string& split) {
 }
 
 std::string Caption(const std::vector<MethodResults>& methods, const std::string& split,
-                    double tolerance) {
+                    double tolerance, const TableOptions& options) {
   const EvalFile& first = FirstFound(methods).evals.front();
   std::set<std::size_t> counts, seeds;
   std::vector<std::string> engines;  // of every method, or once where they are the same
@@ -89,46 +107,62 @@ std::string Caption(const std::vector<MethodResults>& methods, const std::string
       first.push > 0 ? fmt::format(", pushes of {} N", first.push) : std::string();
   return fmt::format(
       "Successes per episode on {} {}, tolerance {} rad; {} episodes a method, {} seed{}; engine "
-      "{}{}; mean with 95 % interval (bootstrap over episodes). Falls: share of "
-      "episodes; length: control steps of 600.",
+      "{}{}; mean with 95 % interval (bootstrap over episodes).{}",
       ObjectNames(first, split).size(), SplitName(split), tolerance, fmt::join(counts, " or "),
       fmt::join(seeds, " or "), seeds == std::set<std::size_t>{1} ? "" : "s",
-      fmt::join(engines, ", "), push);
+      fmt::join(engines, ", "), push,
+      options.categories ? "" : " Falls: share of episodes; length: control steps of 600.");
 }
 
-std::vector<Estimate> Unknown() {
-  return std::vector<Estimate>(kColumns.size(), {kUnknown, kUnknown, kUnknown});
+std::vector<Estimate> Unknown(const Columns& columns) {
+  return std::vector<Estimate>(columns.size(), {kUnknown, kUnknown, kUnknown});
 }
 
 TableRow RowOf(const MethodResults& method, const std::string& split, double tolerance,
-               const BootstrapOptions& bootstrap) {
+               const Columns& columns, const BootstrapOptions& bootstrap) {
   const auto episodes = PooledEpisodes(method, split, tolerance);
-  if (episodes.empty()) return {method.label, false, Unknown(), true};
-  const Metrics metrics = ComputeMetrics(episodes, bootstrap);
+  if (episodes.empty()) return {method.label, false, Unknown(columns), true};
+  const std::vector<EvalObject>& objects = method.evals.front().objects;
+  std::map<std::string, Metrics> metrics;  // of each category that a column asks for
   TableRow row{method.label, false, {}};
-  for (const Metric column : kColumns) row.values.push_back(metrics[column]);
+  for (const auto& [metric, category] : columns) {
+    if (!metrics.contains(category)) {
+      auto chosen = episodes;
+      if (!category.empty())
+        std::erase_if(chosen, [&, &wanted = category](const EpisodeRecord& episode) {
+          return objects[episode.object].category != wanted;
+        });
+      metrics[category] = ComputeMetrics(chosen, bootstrap);
+    }
+    row.values.push_back(metrics[category][metric]);
+  }
   return row;
 }
 
 std::vector<TableRow> PaperRows(const std::vector<PaperNumber>& paper, const std::string& table,
-                                const std::string& split) {
+                                const std::string& split, const Columns& columns) {
   std::vector<TableRow> rows;
   for (const PaperNumber& number : paper) {
     if (number.table != table || number.split != split) continue;
     auto row = std::find_if(rows.begin(), rows.end(),
                             [&](const TableRow& r) { return r.label == number.method; });
     if (row == rows.end()) {
-      rows.push_back({number.method, true, Unknown()});
+      rows.push_back({number.method, true, Unknown(columns)});
       row = rows.end() - 1;
     }
-    for (std::size_t c = 0; c < kColumns.size(); ++c)
-      if (number.metric == Info(kColumns[c]).name)
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      if (number.metric == columns[c].name())
         row->values[c] = {number.value, kUnknown, kUnknown};
   }
   return rows;
 }
 
 }  // namespace
+
+std::string TableColumn::name() const {
+  return category.empty() ? Info(metric).name : fmt::format("{}:{}", Info(metric).name, category);
+}
+std::string TableColumn::label() const { return category.empty() ? Info(metric).label : category; }
 
 std::vector<PaperNumber> ReadPaperNumbers(const std::string& path) {
   const CsvTable csv = CsvTable::Read(path);
@@ -149,23 +183,23 @@ std::vector<PaperNumber> ReadPaperNumbers(const std::string& path) {
 
 std::vector<ResultTable> MakeTables(const std::vector<MethodResults>& methods,
                                     const std::vector<PaperNumber>& paper,
-                                    const std::string& paper_table,
-                                    const BootstrapOptions& bootstrap, bool rows_are_engines) {
-  CheckComparable(methods, rows_are_engines);
-  std::vector<double> tolerances;
-  for (const EvalRun& run : FirstFound(methods).evals.front().runs)
-    tolerances.push_back(run.tolerance);
+                                    const TableOptions& options,
+                                    const BootstrapOptions& bootstrap) {
+  CheckComparable(methods, options.engines);
+  const EvalFile& first = FirstFound(methods).evals.front();
   std::vector<ResultTable> tables;
   for (const char* split : {"train", "ood"})
-    for (const double tolerance : tolerances) {
-      ResultTable table{split, tolerance, kColumns, {}, Caption(methods, split, tolerance)};
+    for (const EvalRun& run : first.runs) {
+      const double tolerance = run.tolerance;
+      const Columns columns = options.categories ? CategoryColumns(first, split) : MetricColumns();
+      ResultTable table{split, tolerance, columns, {}, Caption(methods, split, tolerance, options)};
       for (const MethodResults& method : methods)
-        table.rows.push_back(RowOf(method, split, tolerance, bootstrap));
+        table.rows.push_back(RowOf(method, split, tolerance, columns, bootstrap));
       if (std::all_of(table.rows.begin(), table.rows.end(),
                       [](const TableRow& row) { return row.missing; }))
         continue;
       if (std::abs(tolerance - kPaperTolerance) < 1e-9)
-        for (TableRow& row : PaperRows(paper, paper_table, split))
+        for (TableRow& row : PaperRows(paper, options.paper_table, split, columns))
           table.rows.push_back(std::move(row));
       tables.push_back(std::move(table));
     }

@@ -31,24 +31,35 @@ struct TableRow {
   bool missing = false;          // not evaluated: all values are NaN
 };
 
+// A metric over all objects or, where one is named, over those of a category.
+struct TableColumn {
+  Metric metric = Metric::kMean;
+  std::string category;
+  std::string name() const;   // key in files: "s_mean", "s_mean:shoe"
+  std::string label() const;  // for people: "S_mean", "shoe"
+};
+
 // A table of one split at one tolerance.
 struct ResultTable {
   std::string split;     // "train" or "ood"
   double tolerance = 0;  // rad
-  std::vector<Metric> columns;
+  std::vector<TableColumn> columns;
   std::vector<TableRow> rows;
   std::string caption;  // objects, episodes, seeds, engine
 };
 
-// One table for each split and tolerance that the evaluations hold; the paper's rows (of its
-// `table`) stand below ours at tolerance 0.4 rad. Throws Error when all methods are missing, or
-// when they were evaluated on different objects or, unless rows may be engines, with different
-// engines or substeps.
+struct TableOptions {
+  std::string paper_table = "1";  // which of the paper's
+  bool engines = false;           // rows may be of different engines and substeps
+  bool categories = false;        // columns are the mean successes on each category, and on all
+};
+
+// One table for each split and tolerance that the evaluations hold; the paper's rows stand below ours
+// at tolerance 0.4 rad. Throws Error when all methods are missing, or when they were evaluated on
+// different objects or, unless rows are engines, with different engines or substeps.
 std::vector<ResultTable> MakeTables(const std::vector<MethodResults>& methods,
                                     const std::vector<PaperNumber>& paper,
-                                    const std::string& paper_table,
-                                    const BootstrapOptions& bootstrap,
-                                    bool rows_are_engines = false);
+                                    const TableOptions& options, const BootstrapOptions& bootstrap);
 
 std::string MarkdownOf(const std::vector<ResultTable>& tables);
 std::string LatexOf(const std::vector<ResultTable>& tables);

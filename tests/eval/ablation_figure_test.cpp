@@ -18,7 +18,7 @@ TEST(AblationFigure, BarsAreTheTablesNumbersOfTheTrainingObjects) {
                                                 {"6 experts", SampleEval(5)}};
   const Figure figure = AblationFigure(methods, 0.4);
   const auto tables =
-      MakeTables({{"4 experts", {methods[0].eval}}, {"6 experts", {methods[1].eval}}}, {}, "1", {});
+      MakeTables({{"4 experts", {methods[0].eval}}, {"6 experts", {methods[1].eval}}}, {}, {}, {});
   std::istringstream data(figure.data);
   std::string line;
   for (std::size_t m = 0; m < 2; ++m)
@@ -29,7 +29,7 @@ TEST(AblationFigure, BarsAreTheTablesNumbersOfTheTrainingObjects) {
       double place = 0, value = 0, low = 0, high = 0;
       std::string metric;
       fields >> place >> metric >> value >> low >> high;
-      EXPECT_EQ(metric, Info(tables[0].columns[k]).name);
+      EXPECT_EQ(metric, tables[0].columns[k].name());
       const Estimate& expected = tables[0].rows[m].values[k];
       EXPECT_NEAR(value, expected.value, 1e-4);
       EXPECT_NEAR(low, expected.low, 1e-4);

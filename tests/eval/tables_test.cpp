@@ -43,7 +43,7 @@ TEST(PaperNumbers, UnknownMetricsAreNamed) {
 
 TEST(Tables, PaperRowsStandBelowOursAtTheirToleranceOnly) {
   const std::vector<MethodResults> methods = {{"Base", {SampleEval(5)}}, {"Ours", {SampleEval(9)}}};
-  const auto tables = MakeTables(methods, ReadPaperNumbers("data/paper_tables.csv"), "1", {50, 1});
+  const auto tables = MakeTables(methods, ReadPaperNumbers("data/paper_tables.csv"), {}, {50, 1});
   ASSERT_EQ(tables.size(), 4u);  // two splits, two tolerances
   for (const ResultTable& table : tables) {
     EXPECT_EQ(table.rows.size(), table.tolerance == 0.4 ? 12u : 2u);
@@ -60,7 +60,7 @@ TEST(Tables, PaperRowsStandBelowOursAtTheirToleranceOnly) {
 TEST(Tables, MarkdownColumnsLineUp) {
   const std::vector<MethodResults> methods = {{"Bäse", {SampleEval(5)}},
                                               {"A much longer name", {SampleEval(9)}}};
-  const std::string text = MarkdownOf(MakeTables(methods, {}, "1", {50, 1}));
+  const std::string text = MarkdownOf(MakeTables(methods, {}, {}, {50, 1}));
   std::size_t width = 0, lines = 0;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = text.find('\n', at);
@@ -81,7 +81,7 @@ TEST(Tables, MarkdownColumnsLineUp) {
 
 TEST(Tables, LatexEscapesAndCsvIsATable) {
   const std::vector<MethodResults> methods = {{"Base_1 & 5%", {SampleEval(5)}}};
-  const auto tables = MakeTables(methods, ReadPaperNumbers("data/paper_tables.csv"), "1", {50, 1});
+  const auto tables = MakeTables(methods, ReadPaperNumbers("data/paper_tables.csv"), {}, {50, 1});
   const std::string latex = LatexOf(tables);
   EXPECT_THAT(latex, HasSubstr("Base\\_1 \\& 5\\%"));
   EXPECT_THAT(latex, HasSubstr("\\toprule"));
@@ -98,7 +98,7 @@ TEST(Tables, LatexEscapesAndCsvIsATable) {
 
 TEST(Tables, SeedsOfAMethodArePooled) {
   const EvalFile a = SampleEval(5, 1), b = SampleEval(9, 2);
-  const auto tables = MakeTables({{"Both", {a, b}}}, {}, "1", {50, 1});
+  const auto tables = MakeTables({{"Both", {a, b}}}, {}, {}, {50, 1});
   EXPECT_THAT(tables[0].caption, HasSubstr("120 episodes a method, 2 seeds"));
   double mean = 0;
   for (int o = 0; o < 6; ++o)
@@ -108,17 +108,42 @@ TEST(Tables, SeedsOfAMethodArePooled) {
   EXPECT_NEAR(tables[0].rows[0].values[4].value, mean, 1e-12);
 }
 
+// A column of a category is what a table of its objects alone says; together they are all objects.
+TEST(Tables, CategoriesHaveColumnsOfTheirOwn) {
+  EvalFile eval = SampleEval(5);
+  for (int o : {0, 1, 7}) eval.objects[o].category = "shoe";
+  const auto tables = MakeTables({{"Ours", {eval}}}, {}, {.categories = true}, {50, 1});
+  ASSERT_EQ(tables.size(), 4u);
+  for (const ResultTable& table : tables) {
+    ASSERT_EQ(table.columns.size(), 3u);
+    EXPECT_EQ(table.columns[0].label(), "shoe");
+    EXPECT_EQ(table.columns[1].name(), "s_mean:train");
+    EXPECT_EQ(table.columns[2].name(), "s_mean");
+    const auto& values = table.rows[0].values;
+    const double shoes = table.split == "train" ? 2 : 1, trains = table.split == "train" ? 4 : 1;
+    EXPECT_NEAR((shoes * values[0].value + trains * values[1].value) / (shoes + trains),
+                values[2].value, 1e-12);
+  }
+  EvalFile shoes = eval;
+  std::erase_if(shoes.runs[0].episodes, [](const EpisodeRecord& e) { return e.object > 1; });
+  const auto alone = MakeTables({{"Ours", {shoes}}}, {}, {}, {50, 1});
+  EXPECT_EQ(tables[0].rows[0].values[0].value, alone[0].rows[0].values[4].value);
+  EXPECT_EQ(tables[0].rows[0].values[0].low, alone[0].rows[0].values[4].low);
+  EXPECT_THAT(MarkdownOf(tables), HasSubstr(" shoe |"));
+  EXPECT_THAT(LatexOf(tables), HasSubstr("Method & shoe & train & "));
+}
+
 TEST(Tables, MethodsOfOtherObjectsOrEnginesAreRefused) {
   EvalFile other = SampleEval(5);
   other.objects[2].name = "stranger";
   EXPECT_THAT(Message([&] {
-                MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, "1", {1, 1});
+                MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, {}, {1, 1});
               }),
               HasSubstr("B: expected the same train objects as A"));
   other = SampleEval(5);
   other.substeps = 4;
   EXPECT_THAT(Message([&] {
-                MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, "1", {1, 1});
+                MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, {}, {1, 1});
               }),
               HasSubstr("substeps"));
 }
@@ -126,7 +151,7 @@ TEST(Tables, MethodsOfOtherObjectsOrEnginesAreRefused) {
 TEST(Tables, AMethodWithoutEvaluationsIsMissingInEveryTable) {
   const std::vector<MethodResults> methods = {
       {"Gone", {}}, {"Base", {SampleEval(5)}}, {"Also gone", {}}};
-  const auto tables = MakeTables(methods, {}, "1", {50, 1});
+  const auto tables = MakeTables(methods, {}, {}, {50, 1});
   ASSERT_EQ(tables.size(), 4u);
   for (const ResultTable& table : tables) {
     ASSERT_EQ(table.rows.size(), 3u);
@@ -139,14 +164,14 @@ TEST(Tables, AMethodWithoutEvaluationsIsMissingInEveryTable) {
   EXPECT_THAT(LatexOf(tables), HasSubstr("Also gone & \\multicolumn{8}{c}{missing} \\\\"));
   EXPECT_THAT(CsvOf(tables), HasSubstr("train,0.4,missing,Gone,s_min,,,\n"));
   // The others' numbers do not depend on who is missing.
-  const auto alone = MakeTables({methods[1]}, {}, "1", {50, 1});
+  const auto alone = MakeTables({methods[1]}, {}, {}, {50, 1});
   for (std::size_t c = 0; c < alone[0].columns.size(); ++c)
     EXPECT_EQ(tables[0].rows[1].values[c].value, alone[0].rows[0].values[c].value);
 }
 
 TEST(Tables, AllMissingIsAnError) {
   EXPECT_EQ(Message([&] {
-              MakeTables({{"A", {}}, {"B", {}}}, {}, "1", {1, 1});
+              MakeTables({{"A", {}}, {"B", {}}}, {}, {}, {1, 1});
             }),
             "expected an evaluation of at least one of 2 methods, found none");
 }
@@ -155,7 +180,7 @@ TEST(Tables, RowsMayBeEngines) {
   EvalFile other = SampleEval(5);
   other.engine = "mujoco";
   other.substeps = 16;
-  const auto tables = MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, "1", {1, 1}, true);
+  const auto tables = MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, {.engines = true}, {1, 1});
   EXPECT_THAT(tables[0].caption, HasSubstr("mujoco with 16 substeps"));
 }
 
