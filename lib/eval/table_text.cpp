@@ -33,7 +33,8 @@ std::vector<std::vector<std::string>> Cells(const ResultTable& table) {
   for (const TableRow& row : table.rows) {
     lines.push_back({row.paper ? row.label + " (paper)" : row.label});
     for (std::size_t c = 0; c < row.values.size(); ++c)
-      lines.back().push_back(row.missing ? "missing" : Cell(table.columns[c].metric, row.values[c]));
+      lines.back().push_back(row.missing ? "missing"
+                                         : Cell(table.columns[c].metric, row.values[c]));
   }
   return lines;
 }

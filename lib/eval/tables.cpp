@@ -118,6 +118,17 @@ std::vector<Estimate> Unknown(const Columns& columns) {
   return std::vector<Estimate>(columns.size(), {kUnknown, kUnknown, kUnknown});
 }
 
+// Those on objects of the category; all without one.
+std::vector<EpisodeRecord> OfCategory(std::vector<EpisodeRecord> episodes,
+                                      const std::vector<EvalObject>& objects,
+                                      const std::string& category) {
+  if (!category.empty())
+    std::erase_if(episodes, [&](const EpisodeRecord& episode) {
+      return objects[episode.object].category != category;
+    });
+  return episodes;
+}
+
 TableRow RowOf(const MethodResults& method, const std::string& split, double tolerance,
                const Columns& columns, const BootstrapOptions& bootstrap) {
   const auto episodes = PooledEpisodes(method, split, tolerance);
@@ -126,14 +137,8 @@ TableRow RowOf(const MethodResults& method, const std::string& split, double tol
   std::map<std::string, Metrics> metrics;  // of each category that a column asks for
   TableRow row{method.label, false, {}};
   for (const auto& [metric, category] : columns) {
-    if (!metrics.contains(category)) {
-      auto chosen = episodes;
-      if (!category.empty())
-        std::erase_if(chosen, [&, &wanted = category](const EpisodeRecord& episode) {
-          return objects[episode.object].category != wanted;
-        });
-      metrics[category] = ComputeMetrics(chosen, bootstrap);
-    }
+    if (!metrics.contains(category))
+      metrics[category] = ComputeMetrics(OfCategory(episodes, objects, category), bootstrap);
     row.values.push_back(metrics[category][metric]);
   }
   return row;
@@ -151,8 +156,7 @@ std::vector<TableRow> PaperRows(const std::vector<PaperNumber>& paper, const std
       row = rows.end() - 1;
     }
     for (std::size_t c = 0; c < columns.size(); ++c)
-      if (number.metric == columns[c].name())
-        row->values[c] = {number.value, kUnknown, kUnknown};
+      if (number.metric == columns[c].name()) row->values[c] = {number.value, kUnknown, kUnknown};
   }
   return rows;
 }

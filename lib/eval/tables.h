@@ -54,9 +54,9 @@ struct TableOptions {
   bool categories = false;        // columns are the mean successes on each category, and on all
 };
 
-// One table for each split and tolerance that the evaluations hold; the paper's rows stand below ours
-// at tolerance 0.4 rad. Throws Error when all methods are missing, or when they were evaluated on
-// different objects or, unless rows are engines, with different engines or substeps.
+// One table for each split and tolerance that the evaluations hold; the paper's rows stand below
+// ours at tolerance 0.4 rad. Throws Error when all methods are missing, or when they were evaluated
+// on different objects or, unless rows are engines, with different engines or substeps.
 std::vector<ResultTable> MakeTables(const std::vector<MethodResults>& methods,
                                     const std::vector<PaperNumber>& paper,
                                     const TableOptions& options, const BootstrapOptions& bootstrap);

@@ -17,9 +17,9 @@ DEX_INLINE float Widen(BFloat16 x) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(x.bits) << 16);
 }
 
-// The upper half of the result: x to nearest, ties to even. Adds just below half of the last kept place,
-// one more when that place is odd. A NaN whose payload would carry over, or lie in the lost bits alone,
-// becomes a quiet one.
+// The upper half of the result: x to nearest, ties to even. Adds just below half of the last kept
+// place, one more when that place is odd. A NaN whose payload would carry over, or lie in the lost
+// bits alone, becomes a quiet one.
 DEX_INLINE std::uint32_t Round(float x) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(x);
   const std::uint32_t rounded = bits + 0x7fffu + ((bits >> 16) & 1u);
@@ -28,8 +28,8 @@ DEX_INLINE std::uint32_t Round(float x) {
 
 DEX_INLINE BFloat16 Narrow(float x) { return {static_cast<std::uint16_t>(Round(x) >> 16)}; }
 
-// Two neighbours in one word of 32 bits, the first in its lower half: loops over words need no shuffles
-// between lanes of different width, and take less than half of the time.
+// Two neighbours in one word of 32 bits, the first in its lower half: loops over words need no
+// shuffles between lanes of different width, and take less than half of the time.
 struct Two {
   float first, second;
 };
@@ -40,7 +40,7 @@ DEX_INLINE Two Load(const BFloat16* x) {
 }
 DEX_INLINE void Store(float first, float second, BFloat16* y) {
   const std::uint32_t word = (Round(first) >> 16) | (Round(second) & 0xffff0000u);
-  std::memcpy(y, &word, sizeof(word));
+  std::memcpy(static_cast<void*>(y), &word, sizeof(word));
 }
 
 // NaN stays NaN.

@@ -180,7 +180,8 @@ TEST(Tables, RowsMayBeEngines) {
   EvalFile other = SampleEval(5);
   other.engine = "mujoco";
   other.substeps = 16;
-  const auto tables = MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, {.engines = true}, {1, 1});
+  const auto tables =
+      MakeTables({{"A", {SampleEval(5)}}, {"B", {other}}}, {}, {.engines = true}, {1, 1});
   EXPECT_THAT(tables[0].caption, HasSubstr("mujoco with 16 substeps"));
 }
 

@@ -89,6 +89,17 @@ TEST(BFloat16, ActivationGradientsAreTheFloatOnesRounded) {
   EXPECT_EQ(Widened(dx), Widened(Rounded(expected)));
 }
 
+TEST(BFloat16, EluGradientOfNanIsNanInPairsAndAtTheEnd) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto y = Rounded({1, nan, -nan, -0.5f, nan}), dy = Rounded({1, 1, 1, 1, 1});
+  std::vector<BFloat16> dx(5);
+  EluGradientArray(5, y.data(), dy.data(), dx.data());
+  const auto wide = Widened(dx);
+  for (const int i : {1, 2, 4}) EXPECT_TRUE(std::isnan(wide[i])) << i;
+  EXPECT_EQ(wide[0], 1);
+  EXPECT_EQ(wide[3], 0.5f);
+}
+
 TEST(Precision, AutoIsWhatTheProcessorHasAndUnknownWordsAreErrors) {
   EXPECT_EQ(ResolvePrecision("auto"), HasNativeBfloat16() ? "bf16" : "f32");
   EXPECT_EQ(ResolvePrecision("f32"), "f32");

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -101,7 +100,8 @@ TEST_F(AblateRecipe, WithoutSwitchesNamedEachTrainsSomethingElse) {
 
 // An input left out in training is left out in evaluation, too.
 TEST_F(AblateRecipe, TheTaskOfASwitchIsEvaluated) {
-  const std::string inputs = "--task.extra_inputs=goal_vector,joint_speed,tip_position,tip_contact ";
+  const std::string inputs =
+      "--task.extra_inputs=goal_vector,joint_speed,tip_position,tip_contact ";
   for (const char* tool : {"train_base", "evaluate"}) {
     const auto lines = Lines(tool, "no_clock");
     ASSERT_EQ(lines.size(), 2u) << tool;
